@@ -1,0 +1,148 @@
+/// \file
+/// The whole pipeline without ROS: events, frames and exposure messages go in as they arrive, one
+/// image for each frame comes out. Live nodelet and `deblur_bag` both run this class.
+///
+///     events ----> EventStream ----> PixelEventLists ---+
+///     frames ----> ExposureWindow --(window known)------+--> DoubleIntegral -> CameraResponse ->
+///     sink exposure --> ExposureWindow
+///
+/// Clock. `now_ns` is the arrival time on a clock that never goes back: a steady clock live, the
+/// bag's record time offline. It serves the close timeout alone and is never compared with stamps.
+///
+/// Not thread safe: calls must not overlap. Never throws out of the add...() and advance() calls
+/// except std::bad_alloc.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "fast_edi/core/event_wire.hpp"
+#include "fast_edi/core/image.hpp"
+#include "fast_edi/core/parameters.hpp"
+#include "fast_edi/core/types.hpp"
+
+namespace fast_edi {
+
+/// A frame as it came in. `owner` keeps the memory behind `image` alive and lets the sink find the
+/// message it came from.
+struct InputFrame {
+  std::int64_t stamp_ns = 0;
+  ImageView image;
+  bool supported = true;  ///< false: the encoding is not one we deblur; passed through
+  std::shared_ptr<const void> owner;
+};
+
+/// Why a frame was passed through unchanged.
+enum class PassReason {
+  kPassthroughParameter,  ///< `passthrough` is set
+  kUnsupportedEncoding,
+  kSizeMismatch,     ///< frame and event array differ in size
+  kExposureUnknown,  ///< neither topic nor parameter
+  kNoEventStream,    ///< start-up: no event array was ever seen
+  kEventsMissing,    ///< start-up, flush, overflow or a gap inside the exposure
+};
+constexpr std::size_t kPassReasonCount = 6;
+/// A short phrase for people, e.g. "exposure unknown".
+const char* toString(PassReason reason);
+
+/// What became of a frame.
+struct OutputFrame {
+  InputFrame input;
+  std::int64_t stamp_ns = 0;  ///< stamp of the output image
+  bool deblurred = false;     ///< false: the output is a copy of the input
+  PassReason pass_reason = PassReason::kPassthroughParameter;  ///< when !deblurred
+  ExposureInterval exposure;  ///< in frame time; zero length when not known
+  std::uint64_t events = 0;   ///< events inside the exposure
+};
+
+/// Receives the output. Called from within the Deblurrer's calls.
+class FrameSink {
+ public:
+  virtual ~FrameSink() = default;
+  /// Memory for the output of \p input: same size and format, written before finish().
+  virtual MutableImageView begin(const InputFrame& input) = 0;
+  /// The memory handed out by the last begin() now holds the image that \p output describes.
+  virtual void finish(const OutputFrame& output) = 0;
+};
+
+/// Counts since construction. Nothing is lost without one of these moving.
+struct DeblurCounters {
+  std::uint64_t events_in = 0;          ///< records that arrived
+  std::uint64_t events_late = 0;        ///< older than the newest: dropped
+  std::uint64_t events_outside = 0;     ///< not on the sensor: dropped
+  std::uint64_t events_glitched = 0;    ///< unconfirmed time jump: dropped
+  std::uint64_t events_overflowed = 0;  ///< max_buffered_events reached: oldest dropped
+  std::uint64_t event_arrays = 0;
+  std::uint64_t event_array_gaps = 0;  ///< holes in header.seq
+  std::uint64_t event_time_jumps = 0;
+  std::uint64_t frame_time_jumps = 0;
+  std::uint64_t size_changes = 0;  ///< sensor size of the event arrays changed
+  std::uint64_t frames_in = 0;
+  std::uint64_t frames_deblurred = 0;
+  std::uint64_t frames_still = 0;      ///< of those: no event in the exposure
+  std::uint64_t frames_timed_out = 0;  ///< closed by close_timeout with what had come
+  std::array<std::uint64_t, kPassReasonCount> frames_passed{};
+  std::uint64_t frames_suppressed = 0;  ///< output stamp not later than the last one: no output
+  std::uint64_t exposures_in = 0;
+  std::uint64_t exposures_refused = 0;  ///< <= 0 or > 1 s
+  std::uint64_t exposures_surplus = 0;
+  std::uint64_t exposures_missing = 0;
+  std::uint64_t closes_followed = 0;  ///< window had been predicted
+  std::uint64_t closes_surprise = 0;
+  std::uint64_t pixels_out_of_range = 0;
+
+  std::uint64_t framesPassed() const;
+};
+
+/// State of the moment, for diagnostics.
+struct DeblurStatus {
+  std::size_t buffered_events = 0;
+  std::size_t buffer_bytes = 0;  ///< lists and per-pixel state
+  std::size_t waiting_frames = 0;
+  bool events_seen = false;
+  bool exposure_known = false;
+  SensorSize sensor_size;  ///< zero until the first event array or frame
+  std::int64_t last_exposure_ns = 0;
+};
+
+class Deblurrer {
+ public:
+  /// \param sink must outlive this object
+  /// \throws std::invalid_argument naming the parameter that is out of range
+  Deblurrer(const DeblurParameters& parameters, FrameSink& sink);
+  ~Deblurrer();
+  Deblurrer(const Deblurrer&) = delete;
+  Deblurrer& operator=(const Deblurrer&) = delete;
+
+  /// One event array. \p size is what the array says of the sensor, \p sequence its header.seq
+  /// (holes in it are counted and mark events as missing; a value that does not grow says nothing).
+  void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
+                 std::int64_t now_ns);
+  void addFrame(InputFrame frame, std::int64_t now_ns);
+  void addExposure(std::int32_t exposure_us, std::int64_t now_ns);
+  /// Closes what the passing of time alone decides. Call it at least every few milliseconds.
+  void advance(std::int64_t now_ns);
+  /// Closes all waiting frames with what has come: the end of a bag.
+  void finish();
+  /// Forgets events and waiting frames (which are dropped without output, counted as suppressed):
+  /// for the time nobody listened. The next events start up anew.
+  void pause();
+
+  /// Takes over new parameters for frames closed from now on.
+  /// \throws std::invalid_argument and keeps the old ones when one is out of range
+  void setParameters(const DeblurParameters& parameters);
+  const DeblurParameters& parameters() const;
+
+  const DeblurCounters& counters() const;
+  DeblurStatus status() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fast_edi

@@ -1,0 +1,35 @@
+/// \file
+/// Everything a user can set about deblurring, in the units of the core. Names, units and defaults
+/// of the user-facing keys are in parameters_from_yaml.hpp and README.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "fast_edi/core/camera_response.hpp"
+#include "fast_edi/core/contrast_threshold.hpp"
+#include "fast_edi/core/types.hpp"
+
+namespace fast_edi {
+
+/// Where the length of the exposure comes from.
+enum class ExposureSource { kTopic, kParameter };
+
+struct DeblurParameters {
+  ContrastThresholds thresholds;  ///< natural log, both > 0
+  Weighting weighting = Weighting::kTime;
+  ExposureInstant reference = ExposureInstant::kMid;        ///< instant the latent image shows
+  ExposureInstant stamp_reference = ExposureInstant::kMid;  ///< instant the input stamp means
+  ExposureSource exposure_source = ExposureSource::kTopic;
+  std::int64_t exposure_time_ns = 0;  ///< 0 = not known
+  std::int64_t time_offset_ns = 0;    ///< event time = frame time + offset
+  std::int64_t close_timeout_ns = 100 * kNanosecondsPerMillisecond;
+  std::size_t max_buffered_events = 13'000'000;
+  std::int64_t max_backward_jump_ns = 500 * kNanosecondsPerMillisecond;
+  std::int64_t max_forward_jump_ns = 10'000 * kNanosecondsPerMillisecond;
+  CameraResponse response = CameraResponse::linear();
+  bool passthrough = false;  ///< publish every frame unchanged
+};
+
+}  // namespace fast_edi
