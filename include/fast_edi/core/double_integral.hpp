@@ -16,6 +16,8 @@
 ///
 ///     integral = v_n u_end - u_start + sum_k v_{k-1} (1 - m_k) u_k
 ///
+/// v(f) counts the events in [start, f): an event exactly at the reference time comes after it.
+///
 /// State: two doubles per pixel (the sum, and v), and v at the reference time.
 ///
 /// Running ahead. expect() names the window of the coming frame; follow() folds its events in as
@@ -24,17 +26,18 @@
 /// from the log ("surprise").
 ///
 /// Canonical order, so that the result does not depend on how it was reached, bit for bit: forward
-/// sums start at a base instant that is a function of the window's start alone (see baseInstant()),
+/// sums start at a base instant that is a function of the window alone (see baseInstant()),
 /// and events between start and base are prepended in reverse time order,
 ///
 ///     sum <- m sum + (1 - m) u,   v_n <- m v_n,   v_f <- m v_f.
 ///
 /// A prediction that is off by microseconds has the same base instant except near a multiple of
-/// kBaseQuantum; then, too, close() starts anew.
+/// its quantum; then, too, close() starts anew.
 ///
 /// Numerics. Everything in double; error about 1e-16 * (sum of |v_{k-1} (1 - m_k)| u_k) against the
 /// integral, far below 1e-4 relative for a million events of one pixel. A value that leaves the
 /// range of double (some 2700 net events of one polarity) makes the pixel's gain 1: see close().
+/// Gains are kept within [kMinGain, kMaxGain], far beyond what any image can show.
 #pragma once
 
 #include <cstdint>
@@ -61,6 +64,9 @@ struct CloseReport {
 
 class DoubleIntegral {
  public:
+  static constexpr double kMinGain = 1e-30;
+  static constexpr double kMaxGain = 1e30;
+
   /// \throws std::invalid_argument unless both thresholds are finite and > 0
   DoubleIntegral(SensorSize size, ContrastThresholds thresholds, Weighting weighting);
 
@@ -91,30 +97,55 @@ class DoubleIntegral {
   std::size_t memoryBytes() const;
 
  private:
+  /// Running result of one pixel.
   struct Sums {
-    double sum;    ///< sum_k v_{k-1} (1 - m_k) u_k
-    double value;  ///< v after the newest event folded in
+    double sum;    ///< sum_k v_{k-1} (1 - m_k) u_k over the events folded in
+    double value;  ///< v after them
   };
 
-  void restart(const PixelEventLists& lists, std::int64_t base_ns);
-  void foldUntil(const PixelEventLists& lists, std::int64_t t_ns);
-  void snapshotReference();
+  /// An event's effect on the running result, by polarity (0 = OFF, 1 = ON).
+  struct Factors {
+    double multiplier[2];  ///< m = exp(step)
+    double one_minus[2];   ///< 1 - m
+  };
+
+  /// The sequence numbers of a window's events.
+  struct WindowEvents {
+    std::uint64_t start;
+    std::uint64_t base;       ///< first one at or after the base instant
+    std::uint64_t reference;  ///< first one at or after the reference time
+    std::uint64_t end;
+  };
+
+  static std::int64_t baseInstant(const ExposureInterval& window);
+  bool runningSumsServe(const PixelEventLists& lists, const WindowEvents& events,
+                        std::int64_t base_ns) const;
+  void startAt(const PixelEventLists& lists, std::int64_t base_ns);
+  void fold(const PixelEventLists& lists, std::uint64_t end_sequence);
+  void takeReference();
+  void extendReference(const PixelEventLists& lists, std::uint64_t end_sequence);
+  void prepend(const PixelEventLists& lists, const WindowEvents& events);
+  std::size_t writeGain(double clock_start, double clock_end, float* gain);
+  void clear();
 
   SensorSize size_;
   ContrastThresholds thresholds_;
   Weighting weighting_;
+  Factors factors_;
   std::vector<Sums> sums_;
-  std::vector<double> reference_value_;  ///< v at the reference time
+  std::vector<double> reference_value_;  ///< v at the reference time, once taken
+
   bool expecting_ = false;
-  bool clean_ = true;  ///< all sums are {0, 1}
   ExposureInterval expected_;
   std::int64_t expected_reference_ns_ = 0;
+
+  bool clean_ = false;               ///< every pixel's result is that of no event
+  bool started_ = false;             ///< the members below are in force
   std::int64_t base_ns_ = 0;         ///< forward sums start here
-  std::uint64_t base_sequence_ = 0;  ///< first event at or after the base instant
+  std::uint64_t base_sequence_ = 0;  ///< first event at or after base_ns_
   std::uint64_t cursor_ = 0;         ///< next event to fold
-  bool started_ = false;             ///< base_sequence_ is known
-  bool have_reference_ = false;      ///< reference_value_ holds v up to reference_cursor_
-  std::uint64_t reference_cursor_ = 0;
+  bool reference_taken_ = false;
+  std::uint64_t reference_cursor_ = 0;  ///< next event that reference_value_ does not know of
 };
 
 }  // namespace fast_edi

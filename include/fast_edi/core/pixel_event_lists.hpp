@@ -25,7 +25,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <vector>
 
@@ -131,14 +130,18 @@ class PixelEventLists {
  private:
   struct Chunk;
 
-  Chunk& openChunk(std::int64_t t_ns);
+  Chunk& chunkFor(std::int64_t t_ns);
+  void makeRoom(std::size_t events);
   void dropFront();
-  std::size_t appendBlock(const WireEvents& events);
+  void recycle(std::unique_ptr<Chunk> chunk);
+  std::size_t appendRegular(const WireEvents& events);
   AppendStop appendOne(const Event& event, AppendResult& result);
+  std::size_t chunkIndex(std::uint64_t sequence) const;
 
   SensorSize size_;
   Limits limits_;
-  std::deque<std::unique_ptr<Chunk>> chunks_;
+  std::size_t max_chunks_ = 0;
+  std::vector<std::unique_ptr<Chunk>> chunks_;  ///< oldest first, never empty ones
   std::vector<std::unique_ptr<Chunk>> free_chunks_;
   std::uint64_t begin_sequence_ = 0;
   std::uint64_t end_sequence_ = 0;
