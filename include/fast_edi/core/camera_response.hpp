@@ -3,7 +3,9 @@
 /// never by a search per pixel.
 #pragma once
 
-#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,12 +23,21 @@ namespace fast_edi {
 ///
 /// Applying a gain g (= 1 / E, see DoubleIntegral): DN' = crf(g * crf^-1(DN)), rounded to nearest
 /// and clamped to the format's range. A gain of exactly 1 returns DN itself.
+///
+/// Saturation. A saturated DN says only that the exposure was at least crf^-1(DN). It is taken at
+/// that value, so the result is a lower bound as well: a gain above 1 leaves it saturated, a gain
+/// below 1 darkens it like its neighbours that just do not saturate. (Leaving saturated pixels
+/// alone would keep the trails of moving lights and draw an edge where DN reaches the maximum.)
 class CameraResponse {
  public:
+  /// Largest ln(exposure(255) / exposure(0)) of a table: 26 decades, ten times any sensor's range.
+  static constexpr double kMaxLogSpan = 60.0;
+
   /// Linear response. \throws std::invalid_argument unless 0 <= offset_dn <= 255
   static CameraResponse linear(double offset_dn = 0.0);
 
-  /// \param log_irradiance 256 finite, strictly increasing values [natural log].
+  /// \param log_irradiance 256 finite, strictly increasing values [natural log] that span at most
+  ///        kMaxLogSpan.
   /// \throws std::invalid_argument naming the first value that breaks the rule
   static CameraResponse fromTable(const std::vector<double>& log_irradiance);
 
@@ -34,26 +45,36 @@ class CameraResponse {
   /// \throws std::runtime_error naming file, line and rule
   static CameraResponse fromFile(const std::string& path);
 
-  bool isLinear() const { return linear_; }
+  bool isLinear() const { return tables_ == nullptr; }
   double offsetDn() const { return offset_dn_; }
 
-  /// Exposure for a (possibly fractional) 8-bit DN in [0, 255].
+  /// Exposure for a (possibly fractional) 8-bit DN, clamped to [0, 255]. A table gives it relative
+  /// to its largest value.
   double exposure(double dn) const;
   /// Fractional 8-bit DN for an exposure, clamped to [0, 255]: the inverse of exposure().
   double digitalNumber(double exposure) const;
 
-  /// Writes crf(gain * crf^-1(in)) for every pixel and channel.
-  /// \param gain width x height factors, row-major, each finite and > 0
+  /// Writes crf(gain * crf^-1(in)) for every pixel and channel. Memory padding behind the rows of
+  /// \p out is left alone; \p out may be \p in.
+  /// \param gain width x height factors, row-major, each finite and > 0 (a value that is not gives
+  ///        some DN, never undefined behaviour)
   /// \pre in and out have the same size and format
   void applyGain(const ImageView& in, const float* gain, const MutableImageView& out) const;
 
  private:
+  struct Tables;
+
   CameraResponse() = default;
 
-  bool linear_ = true;
+  void apply8(const std::uint8_t* in, const float* gain, std::size_t count,
+              std::uint8_t* out) const;
+  void apply16(const std::uint8_t* in, const float* gain, std::size_t count,
+               std::uint8_t* out) const;
+  void applyColor8(const std::uint8_t* in, const float* gain, std::size_t width,
+                   std::uint8_t* out) const;
+
   double offset_dn_ = 0.0;
-  std::array<double, 256> log_exposure_{};
-  std::vector<float> inverse_;  ///< see camera_response.cpp: DN over quantised log exposure
+  std::shared_ptr<const Tables> tables_;  ///< null when linear; never changes, hence shared
 };
 
 }  // namespace fast_edi
