@@ -1,0 +1,120 @@
+#include "fast_edi/ros/message_conversion.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include <sensor_msgs/image_encodings.h>
+#include <boost/make_shared.hpp>
+
+namespace fast_edi {
+namespace {
+
+namespace encodings = sensor_msgs::image_encodings;
+
+constexpr std::uint32_t kMaxSide = std::numeric_limits<std::int16_t>::max();
+
+std::optional<PixelFormat> formatOf(const std::string& encoding) {
+  if (encoding == encodings::MONO8 || encoding == encodings::TYPE_8UC1 ||
+      encoding == encodings::BAYER_RGGB8 || encoding == encodings::BAYER_BGGR8 ||
+      encoding == encodings::BAYER_GBRG8 || encoding == encodings::BAYER_GRBG8) {
+    return PixelFormat::kMono8;
+  }
+  if (encoding == encodings::MONO16) {
+    return PixelFormat::kMono16;
+  }
+  if (encoding == encodings::RGB8 || encoding == encodings::BGR8) {
+    return PixelFormat::kColor8;
+  }
+  return std::nullopt;
+}
+
+ImageReading refuse(ImageVerdict verdict, std::string reason) {
+  ImageReading reading;
+  reading.verdict = verdict;
+  reading.reason = std::move(reason);
+  return reading;
+}
+
+std::string sizeText(const sensor_msgs::Image& message) {
+  return std::to_string(message.width) + "x" + std::to_string(message.height);
+}
+
+}  // namespace
+
+ImageReading readImage(const sensor_msgs::Image& message) {
+  if (message.width == 0 || message.height == 0) {
+    return refuse(ImageVerdict::kMalformed,
+                  "size " + sizeText(message) + ", expected at least 1x1 pixels");
+  }
+  const std::optional<PixelFormat> format = formatOf(message.encoding);
+  if (!format) {
+    return refuse(ImageVerdict::kUnsupported,
+                  "encoding \"" + message.encoding +
+                      "\", expected mono8, 8UC1, bayer_*8, mono16, rgb8 or bgr8");
+  }
+  if (*format == PixelFormat::kMono16 && message.is_bigendian != 0) {
+    return refuse(ImageVerdict::kUnsupported, "mono16 in big-endian order, expected little-endian");
+  }
+  if (message.width > kMaxSide || message.height > kMaxSide) {
+    return refuse(ImageVerdict::kUnsupported, "size " + sizeText(message) + ", expected at most " +
+                                                  std::to_string(kMaxSide) + " pixels a side");
+  }
+  // In 64 bits, where no product of the message's 32-bit fields overflows. The last row may lack
+  // its padding.
+  const std::uint64_t row_bytes =
+      std::uint64_t{message.width} * static_cast<std::uint64_t>(bytesPerPixel(*format));
+  if (message.step < row_bytes) {
+    return refuse(ImageVerdict::kMalformed, "step " + std::to_string(message.step) +
+                                                " bytes, expected at least " +
+                                                std::to_string(row_bytes));
+  }
+  const std::uint64_t needed = std::uint64_t{message.step} * (message.height - 1) + row_bytes;
+  if (message.data.size() < needed) {
+    return refuse(ImageVerdict::kMalformed, std::to_string(message.data.size()) +
+                                                " bytes of data, expected at least " +
+                                                std::to_string(needed));
+  }
+  ImageReading reading;
+  reading.verdict = ImageVerdict::kSupported;
+  reading.view.data = message.data.data();
+  reading.view.size = {static_cast<int>(message.width), static_cast<int>(message.height)};
+  reading.view.step = message.step;
+  reading.view.format = *format;
+  return reading;
+}
+
+sensor_msgs::ImagePtr makeImageLike(const sensor_msgs::Image& input, PixelFormat format) {
+  auto image = boost::make_shared<sensor_msgs::Image>();
+  image->header = input.header;
+  image->height = input.height;
+  image->width = input.width;
+  image->encoding = input.encoding;
+  image->is_bigendian = input.is_bigendian;
+  image->step = input.width * static_cast<std::uint32_t>(bytesPerPixel(format));
+  image->data.resize(static_cast<std::size_t>(image->step) * image->height);
+  return image;
+}
+
+MutableImageView viewOf(sensor_msgs::Image& image, PixelFormat format) {
+  MutableImageView view;
+  view.data = image.data.data();
+  view.size = {static_cast<int>(image.width), static_cast<int>(image.height)};
+  view.step = image.step;
+  view.format = format;
+  return view;
+}
+
+sensor_msgs::CameraInfoPtr makeCameraInfo(const sensor_msgs::CameraInfo* latest,
+                                          const sensor_msgs::Image& image) {
+  auto info = latest ? boost::make_shared<sensor_msgs::CameraInfo>(*latest)
+                     : boost::make_shared<sensor_msgs::CameraInfo>();
+  if (!latest) {
+    info->width = image.width;
+    info->height = image.height;
+  }
+  info->header = image.header;
+  return info;
+}
+
+}  // namespace fast_edi
