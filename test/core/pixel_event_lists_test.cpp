@@ -475,8 +475,9 @@ TEST(PixelEventLists, AllocatesNothingInSteadyState) {
   constexpr int kFrames = 30;
   std::vector<std::vector<std::uint8_t>> packets;
   for (std::size_t i = 0; i < kPacketsPerFrame * kFrames; ++i) {
-    packets.push_back(toWire(uniformEvents(
-        10'000, kStart + static_cast<std::int64_t>(i) * kPacketDuration, kPacketDuration)));
+    packets.push_back(toWire(uniformEvents(kEventsPerPacket,
+                                           kStart + static_cast<std::int64_t>(i) * kPacketDuration,
+                                           kPacketDuration)));
   }
   PixelEventLists lists(kSize, {});
   std::uint64_t allocations_before = 0;
