@@ -5,6 +5,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "fold_kernel.hpp"
+#include "gain_kernel.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -29,26 +32,13 @@ std::int64_t floorMultiple(std::int64_t value, std::int64_t divisor) {
   return value - (remainder < 0 ? remainder + divisor : remainder);
 }
 
-/// Calls visit(code, clock) for the events [begin, end) in time order.
+/// Calls visit(span) for the spans that make up the events [begin, end), in time order.
 template <typename Visit>
-void forEachEvent(const PixelEventLists& lists, std::uint64_t begin, std::uint64_t end,
-                  Weighting weighting, std::int64_t base_ns, std::uint64_t base_sequence,
-                  Visit visit) {
-  std::uint64_t sequence = begin;
-  while (sequence < end) {
+void forEachSpan(const PixelEventLists& lists, std::uint64_t begin, std::uint64_t end,
+                 Visit visit) {
+  for (std::uint64_t sequence = begin; sequence < end;) {
     const PackedEventSpan span = lists.span(sequence, end);
-    if (weighting == Weighting::kTime) {
-      const std::int64_t offset_ns = span.base_ns - base_ns;
-      for (std::size_t i = 0; i < span.count; ++i) {
-        visit(span.data[i].code,
-              static_cast<double>(static_cast<std::int64_t>(span.data[i].dt_ns) + offset_ns));
-      }
-    } else {
-      const auto first_clock = static_cast<std::int64_t>(sequence - base_sequence);
-      for (std::size_t i = 0; i < span.count; ++i) {
-        visit(span.data[i].code, static_cast<double>(first_clock + static_cast<std::int64_t>(i)));
-      }
-    }
+    visit(span);
     sequence += span.count;
   }
 }
@@ -58,24 +48,27 @@ void forEachEvent(const PixelEventLists& lists, std::uint64_t begin, std::uint64
 DoubleIntegral::DoubleIntegral(SensorSize size, ContrastThresholds thresholds, Weighting weighting)
     : size_(size),
       weighting_(weighting),
+      factors_(std::make_unique<EventFactors>()),
       sums_(size.pixelCount()),
       reference_value_(size.pixelCount(), 1.0) {
   setThresholds(thresholds);
 }
+
+DoubleIntegral::~DoubleIntegral() = default;
 
 void DoubleIntegral::setThresholds(ContrastThresholds thresholds) {
   requirePositive("ON contrast threshold", thresholds.on);
   requirePositive("OFF contrast threshold", thresholds.off);
   thresholds_ = thresholds;
   for (const bool on : {false, true}) {
-    factors_.multiplier[on] = std::exp(thresholds.step(on));
-    factors_.one_minus[on] = -std::expm1(thresholds.step(on));
+    factors_->multiplier[on] = std::exp(thresholds.step(on));
+    factors_->one_minus[on] = -std::expm1(thresholds.step(on));
   }
   clear();
 }
 
 std::size_t DoubleIntegral::memoryBytes() const {
-  return sums_.capacity() * sizeof(Sums) + reference_value_.capacity() * sizeof(double);
+  return sums_.capacity() * sizeof(PixelSums) + reference_value_.capacity() * sizeof(double);
 }
 
 /// The first multiple of kBaseQuantum_ns that lies a margin after the window's start, or the
@@ -89,7 +82,7 @@ std::int64_t DoubleIntegral::baseInstant(const ExposureInterval& window) {
 
 void DoubleIntegral::clear() {
   if (!clean_) {
-    std::fill(sums_.begin(), sums_.end(), Sums{0.0, 1.0});
+    std::fill(sums_.begin(), sums_.end(), PixelSums{0.0, 1.0});
     clean_ = true;
   }
   started_ = false;
@@ -184,7 +177,14 @@ CloseReport DoubleIntegral::close(const PixelEventLists& lists, const ExposureIn
       by_time ? static_cast<double>(window.start_ns - base_ns) : countFromBase(events.start);
   const double clock_end =
       by_time ? static_cast<double>(window.end_ns - base_ns) : countFromBase(events.end);
-  report.out_of_range = writeGain(clock_start, clock_end, gain);
+  if (clock_start < clock_end) {
+    report.out_of_range = takeGains(sums_.data(), reference_value_.data(), sums_.size(),
+                                    {clock_start, clock_end}, gain);
+    clean_ = true;
+  } else {  // counter weighting, no event
+    std::fill(gain, gain + sums_.size(), 1.0f);
+  }
+  clear();
   expecting_ = false;
   return report;
 }
@@ -195,19 +195,20 @@ void DoubleIntegral::fold(const PixelEventLists& lists, std::uint64_t end_sequen
     return;
   }
   clean_ = false;
-  forEachEvent(lists, cursor_, end_sequence, weighting_, base_ns_, base_sequence_,
-               [sums = sums_.data(), factors = factors_](std::uint32_t code, double clock) {
-                 Sums& pixel = sums[code >> 1];
-                 const double fall = pixel.value * factors.one_minus[code & 1u];
-                 pixel.sum += fall * clock;
-                 pixel.value -= fall;
-               });
+  forEachSpan(lists, cursor_, end_sequence, [this](const PackedEventSpan& span) {
+    if (weighting_ == Weighting::kTime) {
+      foldByTime(span.data, span.count, span.base_ns - base_ns_, *factors_, sums_.data());
+    } else {
+      const auto first_clock = static_cast<std::int64_t>(span.first_sequence - base_sequence_);
+      foldByCounter(span.data, span.count, first_clock, *factors_, sums_.data());
+    }
+  });
   cursor_ = end_sequence;
 }
 
 void DoubleIntegral::takeReference() {
   std::transform(sums_.begin(), sums_.end(), reference_value_.begin(),
-                 [](const Sums& pixel) { return pixel.value; });
+                 [](const PixelSums& pixel) { return pixel.value; });
   reference_taken_ = true;
   reference_cursor_ = cursor_;
 }
@@ -218,11 +219,12 @@ void DoubleIntegral::extendReference(const PixelEventLists& lists, std::uint64_t
   if (reference_cursor_ >= end_sequence) {
     return;
   }
-  forEachEvent(lists, reference_cursor_, end_sequence, weighting_, base_ns_, base_sequence_,
-               [values = reference_value_.data(), factors = factors_](std::uint32_t code, double) {
-                 double& value = values[code >> 1];
-                 value -= value * factors.one_minus[code & 1u];
-               });
+  forEachSpan(lists, reference_cursor_, end_sequence, [this](const PackedEventSpan& span) {
+    for (std::size_t i = 0; i < span.count; ++i) {
+      double& value = reference_value_[span.data[i].code >> 1];
+      value -= value * factors_->one_minus[span.data[i].code & 1u];
+    }
+  });
   reference_cursor_ = end_sequence;
 }
 
@@ -246,10 +248,10 @@ void DoubleIntegral::prepend(const PixelEventLists& lists, const WindowEvents& e
       const std::int64_t clock = weighting_ == Weighting::kTime
                                      ? static_cast<std::int64_t>(span.data[i].dt_ns) + offset_ns
                                      : static_cast<std::int64_t>(begin + i - base_sequence_);
-      const double multiplier = factors_.multiplier[code & 1u];
-      Sums& pixel = sums_[code >> 1];
+      const double multiplier = factors_->multiplier[code & 1u];
+      PixelSums& pixel = sums_[code >> 1];
       pixel.sum =
-          multiplier * pixel.sum + factors_.one_minus[code & 1u] * static_cast<double>(clock);
+          multiplier * pixel.sum + factors_->one_minus[code & 1u] * static_cast<double>(clock);
       pixel.value *= multiplier;
       if (begin + i < events.reference) {
         reference_value_[code >> 1] *= multiplier;
@@ -257,29 +259,6 @@ void DoubleIntegral::prepend(const PixelEventLists& lists, const WindowEvents& e
     }
     end = begin;
   }
-}
-
-/// Writes every pixel's gain and leaves the results of no event behind; returns the number of
-/// pixels out of range.
-std::size_t DoubleIntegral::writeGain(double clock_start, double clock_end, float* gain) {
-  const double length = clock_end - clock_start;
-  std::size_t out_of_range = 0;
-  const std::size_t pixels = sums_.size();
-  if (length <= 0.0) {  // counter weighting, no event
-    std::fill(gain, gain + pixels, 1.0f);
-    clear();
-    return 0;
-  }
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const double integral = sums_[i].sum + sums_[i].value * clock_end - clock_start;
-    const double ratio = length * reference_value_[i] / integral;
-    // False for NaN, and for an integral that lost all its digits.
-    const bool in_range = integral > 0.0 && ratio >= 0.0;
-    gain[i] = static_cast<float>(in_range ? std::min(std::max(ratio, kMinGain), kMaxGain) : 1.0);
-    out_of_range += in_range ? 0 : 1;
-  }
-  clear();
-  return out_of_range;
 }
 
 }  // namespace fast_edi

@@ -41,6 +41,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "fast_edi/core/contrast_threshold.hpp"
@@ -62,6 +63,9 @@ struct CloseReport {
   std::size_t out_of_range = 0;  ///< pixels whose value left the range of double
 };
 
+struct PixelSums;
+struct EventFactors;
+
 class DoubleIntegral {
  public:
   static constexpr double kMinGain = 1e-30;
@@ -69,6 +73,9 @@ class DoubleIntegral {
 
   /// \throws std::invalid_argument unless both thresholds are finite and > 0
   DoubleIntegral(SensorSize size, ContrastThresholds thresholds, Weighting weighting);
+  ~DoubleIntegral();
+  DoubleIntegral(const DoubleIntegral&) = delete;
+  DoubleIntegral& operator=(const DoubleIntegral&) = delete;
 
   /// Names the window and reference time that the next close() will probably ask for, in event
   /// time. Forgets running sums of any other window.
@@ -97,18 +104,6 @@ class DoubleIntegral {
   std::size_t memoryBytes() const;
 
  private:
-  /// Running result of one pixel.
-  struct Sums {
-    double sum;    ///< sum_k v_{k-1} (1 - m_k) u_k over the events folded in
-    double value;  ///< v after them
-  };
-
-  /// An event's effect on the running result, by polarity (0 = OFF, 1 = ON).
-  struct Factors {
-    double multiplier[2];  ///< m = exp(step)
-    double one_minus[2];   ///< 1 - m
-  };
-
   /// The sequence numbers of a window's events.
   struct WindowEvents {
     std::uint64_t start;
@@ -125,14 +120,13 @@ class DoubleIntegral {
   void takeReference();
   void extendReference(const PixelEventLists& lists, std::uint64_t end_sequence);
   void prepend(const PixelEventLists& lists, const WindowEvents& events);
-  std::size_t writeGain(double clock_start, double clock_end, float* gain);
   void clear();
 
   SensorSize size_;
   ContrastThresholds thresholds_;
   Weighting weighting_;
-  Factors factors_;
-  std::vector<Sums> sums_;
+  std::unique_ptr<EventFactors> factors_;
+  std::vector<PixelSums> sums_;
   std::vector<double> reference_value_;  ///< v at the reference time, once taken
 
   bool expecting_ = false;
