@@ -469,10 +469,12 @@ TEST(PixelEventLists, StaysWithinItsBoundForEver) {
 TEST(PixelEventLists, AllocatesNothingInSteadyState) {
   constexpr std::size_t kPacketsPerFrame = 40;
   constexpr std::int64_t kPacketDuration = kMillisecond;
-  constexpr std::size_t kEventsPerPacket = 2500;
-  // Frames end anywhere within chunks: time for the least favourable place to come up.
-  constexpr int kWarmUpFrames = 15;
-  constexpr int kFrames = 30;
+  constexpr std::size_t kEventsPerPacket = 2048;
+  // Frames end at different places within chunks; these repeat after four frames.
+  static_assert(4 * kPacketsPerFrame * kEventsPerPacket % PixelEventLists::kChunkEvents == 0,
+                "the least favourable place has to come up while warming up");
+  constexpr int kWarmUpFrames = 8;
+  constexpr int kFrames = 24;
   std::vector<std::vector<std::uint8_t>> packets;
   for (std::size_t i = 0; i < kPacketsPerFrame * kFrames; ++i) {
     packets.push_back(toWire(uniformEvents(kEventsPerPacket,
