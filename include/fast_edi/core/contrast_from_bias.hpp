@@ -24,9 +24,10 @@ struct BiasSetting {
 
 /// Which table turns coarse and fine into a current.
 enum class CoarseConvention {
-  kLibcaer,  ///< libcaer's table [pA] * fine / 255 (the ROS driver)
-  kJaerXml,  ///< jAER's XML: coarse stored flipped (7 - coarse), 389 nA * 8^(coarse - 5) * fine /
-             ///< 256
+  /// libcaer's table [pA] * fine / 255 (the ROS driver)
+  kLibcaer,
+  /// jAER's XML: 389 nA * 8^(coarse - 5) * fine / 256, the coarse value stored flipped (7 - coarse)
+  kJaerXml,
 };
 
 struct BiasConfiguration {
@@ -43,8 +44,8 @@ struct BiasConfiguration {
 /// \throws std::invalid_argument unless coarse is 0..7 and fine 0..255
 double biasCurrent(const BiasSetting& bias, CoarseConvention convention);
 
-/// K of the equation above. \throws std::invalid_argument unless all three inputs are finite and >
-/// 0
+/// K of the equation above. \throws std::invalid_argument unless all three inputs are finite
+/// and > 0
 double contrastGain(const BiasConfiguration& configuration);
 
 /// Which of the two thresholds a configuration is asked for; the other may be given explicitly.
@@ -53,8 +54,10 @@ struct NeededThresholds {
   bool off = true;
 };
 
-/// \throws std::invalid_argument naming the bias and the rule: coarse 0..7, fine 0..255, I_d > 0,
-///         I_OFF < I_d < I_ON, I_OFF > 0 (the stock ROS driver ships OffBn fine = 0: no value)
+/// A threshold that is not needed comes back as 0, and only the ranges of its bias are checked.
+/// \throws std::invalid_argument naming the bias and the rule, one line each: coarse 0..7,
+///         fine 0..255, I_d > 0, I_OFF < I_d < I_ON, I_OFF > 0 (the stock ROS driver ships OffBn
+///         fine = 0: no value)
 ContrastThresholds contrastFromBias(const BiasConfiguration& configuration,
                                     NeededThresholds needed = {});
 
