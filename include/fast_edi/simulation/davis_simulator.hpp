@@ -1,0 +1,88 @@
+/// \file
+/// A simulated DAVIS looking at a textured plane from a moving camera: events, blurry frames and
+/// the truth about both.
+///
+/// The plane is rendered at sub-steps that follow the motion (SimulationSettings::max_step_px). The
+/// same renderings drive the events and are summed, by the trapezoidal rule, into the frame: it is
+/// the integral over its half-open exposure interval [start, end).
+///
+/// Equal settings give equal output, bit for bit.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "fast_edi/core/types.hpp"
+#include "fast_edi/simulation/camera_motion.hpp"
+#include "fast_edi/simulation/event_sensor.hpp"
+#include "fast_edi/simulation/frame_sensor.hpp"
+#include "fast_edi/simulation/scene.hpp"
+#include "fast_edi/simulation/simulation_settings.hpp"
+
+namespace fast_edi {
+
+struct SimulatedFrame {
+  ExposureInterval exposure;      ///< multiples of 1 us
+  cv::Mat blurry;                 ///< as the camera delivers it: CV_8UC1 or CV_16UC1
+  cv::Mat sharp;                  ///< truth at mid-exposure, free of noise, same type
+  std::vector<int> visible_tags;  ///< ids of tags wholly in view at mid-exposure
+};
+
+/// A stretch of the recording: the exposure of one frame and the time until the next one begins.
+struct SimulatedInterval {
+  std::int64_t start_ns = 0;
+  std::int64_t end_ns = 0;
+  std::vector<Event> events;  ///< with start < t <= end before rounding down to 1 us, sorted
+  SimulatedFrame frame;
+};
+
+struct SimulatedSequence {
+  std::vector<Event> events;
+  std::vector<SimulatedFrame> frames;
+};
+
+class DavisSimulator {
+ public:
+  /// \throws std::invalid_argument for settings out of range, std::runtime_error when the texture
+  ///         file cannot be read
+  explicit DavisSimulator(const SimulationSettings& settings);
+
+  /// Simulates the next interval. \return false when all frames have been taken
+  bool next(SimulatedInterval& interval);
+
+  /// Irradiance of every pixel at an instant of sensor time, CV_32FC1, 1 = white at illumination 1.
+  cv::Mat1f irradianceAt(std::int64_t t_ns) const;
+  /// The latent image at an instant of sensor time: what a noise-free frame of vanishing exposure
+  /// time and equal DN would show. CV_8UC1 or CV_16UC1.
+  cv::Mat latentAt(std::int64_t t_ns) const;
+  /// Ids of the tags that are wholly in view at an instant of sensor time.
+  std::vector<int> visibleTagsAt(std::int64_t t_ns) const;
+
+  const SimulationSettings& settings() const { return settings_; }
+  const Scene& scene() const { return scene_; }
+  const CameraMotion& motion() const { return motion_; }
+  /// For the true thresholds.
+  const EventSensor& eventSensor() const { return event_sensor_; }
+
+ private:
+  std::int64_t stepEnd(std::int64_t limit_ns) const;
+  void renderAt(std::int64_t t_ns, cv::Mat1f& irradiance) const;
+  void advanceTo(std::int64_t t_ns, std::vector<Event>& events, cv::Mat1d* light_sum);
+
+  SimulationSettings settings_;
+  Scene scene_;
+  CameraMotion motion_;
+  EventSensor event_sensor_;
+  FrameSensor frame_sensor_;
+  int frames_taken_ = 0;
+  std::int64_t t_ns_ = 0;
+  cv::Mat1f irradiance_;       ///< at t_ns_
+  cv::Mat1f next_irradiance_;  ///< scratch
+};
+
+/// Runs a whole simulation.
+SimulatedSequence simulateSequence(const SimulationSettings& settings);
+
+}  // namespace fast_edi

@@ -1,0 +1,116 @@
+/// \file
+/// Everything that can be set about a simulated DAVIS recording.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "fast_edi/core/contrast_threshold.hpp"
+#include "fast_edi/core/types.hpp"
+
+namespace fast_edi {
+
+constexpr SensorSize kDavis346Size{346, 260};
+constexpr SensorSize kDavis240cSize{240, 180};
+
+/// Procedural textures; a picture of the user's own replaces them.
+enum class TextureKind {
+  kPoster,   ///< a wall with stickers: discs, stars, rings, letters, shaded balls on soft ground
+  kNatural,  ///< dead leaves: overlapping shapes of power-law size with 1/f shading; many events
+  kFlat,     ///< almost nothing to see: slow shading of a few percent
+};
+
+/// Camera motions over the plane, all smooth and bounded.
+enum class MotionKind {
+  kStill,
+  kMild,   ///< about 100 px/s
+  kPan,    ///< sideways sweeps of up to 500 px/s
+  kSpin,   ///< rotation about the optical axis
+  kShake,  ///< a shaken hand, about 700 px/s rms: strong blur
+};
+
+/// What the camera looks at: a plane seen at one sensor pixel per plane pixel in the nominal pose.
+struct SceneSettings {
+  TextureKind texture = TextureKind::kPoster;
+  std::string texture_file;      ///< a picture (any format OpenCV reads) instead of `texture`
+  int tags = 0;                  ///< AprilTags (36h11, ids 0, 1, ...) spread over the nominal view
+  double tag_side_px = 32.0;     ///< side of a tag's black square in the nominal pose [px]
+  double density = 0.6;          ///< kPoster: fraction of places that carry a sticker, 0..1
+  double optics_sigma_px = 0.6;  ///< blur of lens and photodiode area, Gaussian sigma [px]
+  double illumination = 1.0;     ///< irradiance of a white surface, 1 = bright room
+  double flicker_hz = 0.0;       ///< frequency of the light's modulation, 0 = none [Hz]
+  double flicker_depth = 0.2;    ///< amplitude of the modulation, relative, 0..1
+};
+
+struct MotionSettings {
+  MotionKind kind = MotionKind::kShake;
+  double scale = 1.0;            ///< factor on all amplitudes, hence on all speeds
+  double focal_length_px = 0.0;  ///< 0 = 0.95 x the sensor's width [px]
+};
+
+/// How colours reach the pixels.
+enum class ColorFilter {
+  kNone,       ///< monochrome sensor
+  kBayerRggb,  ///< each photosite sees one colour, in its frame and in its events alike
+};
+
+/// The pixel array. Defaults are those of a DAVIS346 with the biases libcaer sets at start-up, with
+/// non-idealities of usual size; ideal() switches all of them off.
+///
+/// Model of the event part. A pixel compares its log irradiance with the level memorised at its
+/// last event; when the difference reaches a threshold it fires, and for `refractory_ns` memorises
+/// the present level, so that changes in that time are lost. The memorised level leaks downwards
+/// (ON events), noise makes it fire without cause and forget what it had counted until then.
+struct SensorSettings {
+  SensorSize size = kDavis346Size;
+  ColorFilter color_filter = ColorFilter::kNone;
+
+  ContrastThresholds thresholds{0.2609, 0.2415};  ///< means over the array [natural log]
+  double threshold_mismatch = 0.08;   ///< standard deviation over the pixels, relative to the mean
+  std::int64_t refractory_ns = 3400;  ///< RefrBp (4, 25)
+  double leak_rate_hz = 0.1;          ///< ON events of a still scene [1/s per pixel]
+  double shot_noise_bright_hz = 0.5;  ///< noise events where irradiance is 1 [1/s per pixel]
+  double shot_noise_dark_hz = 5.0;    ///< ... and where it is 0; linear in between
+  double photoreceptor_bright_hz = 0.0;  ///< cut-off of a first-order low-pass at irradiance 1 [Hz]
+  double photoreceptor_dark_hz = 0.0;    ///< ... at irradiance 0; both 0 = unlimited bandwidth
+  double hot_pixel_fraction = 0.0;       ///< pixels that fire ON all the time, 0..1
+  double hot_pixel_rate_hz = 1000.0;     ///< ... at this rate [1/s]
+  bool random_initial_level = true;  ///< levels at the start anywhere between the two thresholds
+
+  double white_dn = 215.0;         ///< DN of a white surface at illumination 1
+  double read_noise_dn = 1.5;      ///< standard deviation [DN]
+  double electrons_per_dn = 90.0;  ///< sets the frame's shot noise; 0 = none
+  int frame_bits = 8;              ///< 8 or 16 (the same range: DN16 = 257 x DN)
+
+  /// No noise, no mismatch, no refractory period: frames are exact up to rounding, events exact.
+  static SensorSettings ideal();
+};
+
+/// When frames are taken. Frame i is exposed over [start + lead + i period, ... + exposure).
+struct TimingSettings {
+  std::int64_t start_ns = 1'700'000'000 * kNanosecondsPerSecond;  ///< multiple of 1 us
+  int frames = 30;
+  std::int64_t period_us = 40'000;
+  std::int64_t exposure_us = 20'000;  ///< at most the period
+  std::int64_t lead_us = 20'000;  ///< events before the first exposure and after the last period
+};
+
+struct SimulationSettings {
+  SceneSettings scene;
+  MotionSettings motion;
+  SensorSettings sensor;
+  TimingSettings timing;
+  std::uint64_t seed = 1;
+  double max_step_px = 0.25;  ///< motion between two renderings is kept below this [px]
+
+  double focalLengthPx() const;
+  /// \throws std::invalid_argument naming the first value out of range and what is allowed
+  void validate() const;
+};
+
+/// \throws std::invalid_argument listing the names that are known
+TextureKind textureKindFromName(const std::string& name);
+/// \throws std::invalid_argument listing the names that are known
+MotionKind motionKindFromName(const std::string& name);
+
+}  // namespace fast_edi
