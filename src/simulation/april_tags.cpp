@@ -1,6 +1,7 @@
 #include "fast_edi/simulation/april_tags.hpp"
 
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -24,6 +25,14 @@ constexpr float kPaperReflectance = 0.80F;
 constexpr float kInkReflectance = 0.13F;
 constexpr double kMaxTurnRad = 0.2;
 constexpr int kSubpixelBits = 8;
+
+/// What image_u8_destroy() does; Debian has that function in a second library.
+struct ImageDeleter {
+  void operator()(image_u8_t* image) const {
+    std::free(image->buf);
+    std::free(image);
+  }
+};
 
 cv::Point toFixed(const cv::Point2d& plane, double scale, const cv::Mat& canvas) {
   const double unit = 1 << kSubpixelBits;
@@ -52,8 +61,7 @@ cv::Mat1b tagCells(int id) {
     throw std::invalid_argument("AprilTag 36h11: expected an id of 0 to " +
                                 std::to_string(family->ncodes - 1) + ", got " + std::to_string(id));
   }
-  const std::unique_ptr<image_u8_t, decltype(&image_u8_destroy)> image(
-      apriltag_to_image(family.get(), id), &image_u8_destroy);
+  const std::unique_ptr<image_u8_t, ImageDeleter> image(apriltag_to_image(family.get(), id));
   return cv::Mat1b(image->height, image->width, image->buf, static_cast<std::size_t>(image->stride))
       .clone();
 }
