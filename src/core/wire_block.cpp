@@ -10,6 +10,14 @@ namespace fast_edi {
 
 #if defined(__SSE2__)
 
+namespace {
+
+/// How far ahead of the records their bytes are asked for. Arrays come from the network or the
+/// disk, so they lie in no near cache; hardware prefetching alone leaves a third of the speed.
+constexpr std::size_t kReadAhead_bytes = 6144;
+
+}  // namespace
+
 bool unpackRegularBlock(const std::uint8_t* records, std::size_t count, const RegularBlock& block,
                         PackedEvent* out) {
   const auto load = [](const std::uint8_t* p) {
@@ -30,6 +38,7 @@ bool unpackRegularBlock(const std::uint8_t* records, std::size_t count, const Re
 
   for (std::size_t i = 0; i < count; i += kWireBlockStride) {
     const std::uint8_t* record = records + i * kWireEventBytes;
+    __builtin_prefetch(record + kReadAhead_bytes);
     // Each register holds one record (13 bytes and 3 of the next); transposed, one field of four.
     const __m128i r0 = load(record);
     const __m128i r1 = load(record + kWireEventBytes);
