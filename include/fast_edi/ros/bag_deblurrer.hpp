@@ -1,0 +1,81 @@
+/// \file
+/// A recording through the pipeline: what the nodelet does live, over a bag in the order of its
+/// record times, at full speed.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <vector>
+
+#include <ros/time.h>
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/Image.h>
+
+#include "fast_edi/config/parameters_from_yaml.hpp"
+#include "fast_edi/core/deblurrer.hpp"
+#include "fast_edi/ros/bag_reader.hpp"
+#include "fast_edi/ros/bag_writer.hpp"
+#include "fast_edi/ros/message_frame_sink.hpp"
+#include "fast_edi/ros/topic_names.hpp"
+
+namespace fast_edi {
+
+/// What a run did.
+struct BagDeblurReport {
+  DeblurCounters counters;
+  std::uint64_t messages = 0;            ///< copied
+  std::uint64_t outputs = 0;             ///< images written
+  std::uint64_t malformed_messages = 0;  ///< on a topic of ours, but unreadable: copied, not used
+  double seconds = 0.0;                  ///< wall clock
+  ros::Time last_record_time;            ///< of the last readable message
+  std::vector<BagDamage> damage;
+
+  /// Events per wall-clock second [1/us].
+  double eventsPerMicrosecond() const;
+  /// Something of the input could not be used.
+  bool incomplete() const { return !damage.empty() || malformed_messages > 0; }
+};
+
+/// For people: what came in, what went out, and why a frame was not deblurred.
+void printSummary(std::ostream& out, const BagDeblurReport& report);
+
+class BagDeblurrer {
+ public:
+  /// \param done, total messages
+  using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
+
+  /// \param reader, writer must outlive this object
+  /// \throws std::invalid_argument for parameters out of range
+  BagDeblurrer(BagReader& reader, BagWriter& writer, const TopicNames& topics,
+               const LoadedParameters& parameters, Progress progress);
+
+  /// Copies every message and adds the deblurred frames, each behind the message that completed it
+  /// and with the same record time. At the end of the bag waiting frames are closed with what has
+  /// come. Does not close the writer.
+  /// \throws BagError when the output cannot be written
+  BagDeblurReport run();
+
+ private:
+  enum class Use { kNone, kEvents, kImage, kExposure, kCameraInfo };
+  struct Output {
+    sensor_msgs::ImagePtr image;
+    sensor_msgs::CameraInfoPtr info;
+  };
+
+  Use useOf(const BagConnection& connection) const;
+  /// \return false for a message that contradicts itself
+  bool use(const BagMessage& message, std::int64_t now_ns);
+  void writeOutputs(const ros::Time& record_time);
+
+  BagReader& reader_;
+  BagWriter& writer_;
+  const TopicNames topics_;
+  const Progress progress_;
+  MessageFrameSink sink_;
+  Deblurrer deblurrer_;
+  std::vector<Output> outputs_;  ///< finished by the pipeline, not written yet
+  BagDeblurReport report_;
+};
+
+}  // namespace fast_edi

@@ -1,0 +1,40 @@
+/// \file
+/// Topics of a recording, as davis_ros_driver names them unless told otherwise.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "fast_edi/ros/bag_index.hpp"
+
+namespace fast_edi {
+
+struct TopicNames {
+  std::string events = "/dvs/events";
+  std::string image = "/dvs/image_raw";
+  std::string exposure = "/dvs/exposure";
+  std::string camera_info;  ///< empty: the sibling of `image`
+  std::string output;       ///< namespace of the output; empty: `deblurred` beside `image`
+
+  std::string cameraInfo() const;
+  std::string outputImage() const;
+  std::string outputCameraInfo() const;
+};
+
+/// The namespace of \p topic: "/dvs" for "/dvs/image_raw", "" for "/image_raw".
+std::string topicNamespace(const std::string& topic);
+
+/// Whether \p topics are in a bag and of the right types. Topics with the md5 of an event array are
+/// taken whatever their type's name.
+/// \return what is wrong, one line for each fault, followed by all topics that the bag has; empty
+///         when events and images are there. A missing exposure or camera_info is no fault.
+std::string checkTopics(const TopicNames& topics,
+                        const std::map<std::uint32_t, BagConnection>& connections);
+
+/// For recordings of other drivers: where no message was recorded on `events` or `image`, the only
+/// topic that has the type is taken instead (with its namespace for the exposure). Ambiguity leaves
+/// the names as they are, for checkTopics() to complain.
+TopicNames guessTopics(TopicNames topics,
+                       const std::map<std::uint32_t, BagConnection>& connections);
+
+}  // namespace fast_edi

@@ -1,0 +1,176 @@
+/// \file
+/// `deblur_bag`: a recording in, the same recording with deblurred frames out.
+
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+#include <boost/program_options.hpp>
+
+#include "fast_edi/config/parameters_from_yaml.hpp"
+#include "fast_edi/ros/bag_deblurrer.hpp"
+#include "fast_edi/ros/bag_error.hpp"
+#include "fast_edi/ros/bag_reader.hpp"
+#include "fast_edi/ros/bag_writer.hpp"
+#include "fast_edi/ros/progress_bar.hpp"
+#include "fast_edi/ros/topic_names.hpp"
+
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kInputIncomplete = 2;
+/// More notes than this help nobody.
+constexpr std::size_t kMaxDamageNotes = 10;
+
+struct Arguments {
+  std::string input;
+  std::string output;
+  std::string config;
+  std::string compression;
+  fast_edi::TopicNames topics;
+  std::vector<std::string> overrides;
+  bool overwrite = false;
+};
+
+po::options_description describeOptions(Arguments& arguments) {
+  fast_edi::TopicNames& topics = arguments.topics;
+  po::options_description options("Options");
+  options.add_options()("help,h", "print this")(
+      "in", po::value(&arguments.input)->required()->value_name("BAG"), "recording to read")(
+      "out", po::value(&arguments.output)->required()->value_name("BAG"), "recording to write")(
+      "config", po::value(&arguments.config)->value_name("YAML"),
+      "parameters, e.g. cfg/davis346.yaml; not needed when both contrast thresholds are given as "
+      "name:=value")("events",
+                     po::value(&topics.events)->default_value(topics.events)->value_name("TOPIC"),
+                     "event arrays")(
+      "image", po::value(&topics.image)->default_value(topics.image)->value_name("TOPIC"),
+      "frames")("exposure",
+                po::value(&topics.exposure)->default_value(topics.exposure)->value_name("TOPIC"),
+                "exposure lengths [us]; may be missing")(
+      "camera-info", po::value(&topics.camera_info)->value_name("TOPIC"),
+      "calibration; the sibling of --image by default, may be missing")(
+      "output", po::value(&topics.output)->value_name("NAMESPACE"),
+      "namespace of the deblurred topics; by default `deblurred` beside --image")(
+      "compression", po::value(&arguments.compression)->default_value("same")->value_name("KIND"),
+      "of the output: none, bz2, lz4, or the same as the input's")(
+      "force", po::bool_switch(&arguments.overwrite), "replace the output if it exists");
+  return options;
+}
+
+void printHelp(const po::options_description& options) {
+  std::cout
+      << "Usage: deblur_bag --in IN.bag --out OUT.bag --config cfg/davis346.yaml "
+         "[options] [parameter:=value ...]\n\n"
+         "Copies a recording and adds its deblurred frames as <image "
+         "namespace>/deblurred/image_raw and\n.../camera_info. Parameters given as name:=value "
+         "come before those of the YAML file.\n\n"
+      << options
+      << "\nExit code: 0 done; 1 failed, no output; 2 the input was cut short or damaged: all "
+         "of it that\ncould be read is in the output, which is complete and indexed.\n";
+}
+
+/// \return false when help was asked for and given
+bool parseArguments(int argc, char** argv, Arguments& arguments) {
+  const po::options_description visible = describeOptions(arguments);
+  po::options_description all;
+  all.add(visible).add_options()("override", po::value(&arguments.overrides));
+  po::positional_options_description positional;
+  positional.add("override", -1);
+  po::variables_map values;
+  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  if (argc == 1 || values.count("help") > 0) {
+    printHelp(visible);
+    return false;
+  }
+  po::notify(values);
+  const std::string& kind = arguments.compression;
+  if (kind != "same" && !fast_edi::isKnownCompression(kind)) {
+    throw po::error("--compression " + kind + ": expected same, none, bz2 or lz4");
+  }
+  return true;
+}
+
+fast_edi::LoadedParameters loadParameters(const Arguments& arguments) {
+  if (arguments.overrides.empty() && !arguments.config.empty()) {
+    return fast_edi::parametersFromFile(arguments.config);
+  }
+  YAML::Node root(YAML::NodeType::Map);
+  if (!arguments.config.empty()) {
+    try {
+      root = YAML::LoadFile(arguments.config);
+    } catch (const YAML::Exception& error) {
+      throw fast_edi::ParameterError(arguments.config + ": " + error.what());
+    }
+  }
+  fast_edi::applyOverrides(root, arguments.overrides);
+  return fast_edi::parametersFromYaml(
+      root, std::filesystem::path(arguments.config).parent_path().string());
+}
+
+void printDamage(const fast_edi::BagReader& reader, const fast_edi::BagDeblurReport& report,
+                 const std::string& input) {
+  if (report.damage.empty()) {
+    return;
+  }
+  std::cerr << "warning: " << input << " (" << reader.fileSize()
+            << " bytes) is cut short or damaged; its last readable message was recorded at "
+            << report.last_record_time << "\n";
+  for (std::size_t i = 0; i < report.damage.size() && i < kMaxDamageNotes; ++i) {
+    std::cerr << "  at byte " << report.damage[i].offset << ": " << report.damage[i].what << "\n";
+  }
+  if (report.damage.size() > kMaxDamageNotes) {
+    std::cerr << "  and " << report.damage.size() - kMaxDamageNotes << " more places\n";
+  }
+}
+
+int run(const Arguments& arguments) {
+  const fast_edi::LoadedParameters parameters = loadParameters(arguments);
+  for (const std::string& warning : parameters.warnings) {
+    std::cerr << "warning: " << warning << "\n";
+  }
+  fast_edi::BagReader reader(arguments.input);
+  const std::string faults = fast_edi::checkTopics(arguments.topics, reader.connections());
+  if (!faults.empty()) {
+    throw fast_edi::BagError(arguments.input + ": " + faults);
+  }
+  const std::string compression =
+      arguments.compression == "same" ? reader.compression() : arguments.compression;
+  fast_edi::BagWriter writer(arguments.output, arguments.input, compression, arguments.overwrite);
+  fast_edi::BagDeblurReport report;
+  {
+    fast_edi::ProgressBar bar("deblurring");
+    fast_edi::BagDeblurrer deblurrer(
+        reader, writer, arguments.topics, parameters,
+        [&bar](std::uint64_t done, std::uint64_t total) { bar.update(done, total); });
+    report = deblurrer.run();
+  }
+  writer.close();
+  printSummary(std::cout, report);
+  std::cout << "written: " << arguments.output << "\n" << std::flush;
+  printDamage(reader, report, arguments.input);
+  if (report.malformed_messages > 0) {
+    std::cerr << "warning: " << report.malformed_messages
+              << " messages contradict themselves and were not used\n";
+  }
+  return report.incomplete() ? kInputIncomplete : kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    Arguments arguments;
+    return parseArguments(argc, argv, arguments) ? run(arguments) : kDone;
+  } catch (const po::error& error) {
+    std::cerr << "deblur_bag: " << error.what() << " (see --help)\n";
+  } catch (const std::exception& error) {
+    std::cerr << "deblur_bag: " << error.what() << "\n";
+  }
+  return kFailed;
+}
