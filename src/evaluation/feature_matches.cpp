@@ -1,0 +1,122 @@
+#include "fast_edi/evaluation/feature_matches.hpp"
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/features2d.hpp>
+
+#include "fast_edi/evaluation/image_metrics.hpp"
+#include "surf.hpp"
+
+namespace fast_edi {
+namespace {
+
+constexpr float kRatio = 0.8F;
+constexpr double kInlierDistancePx = 1.0;
+constexpr double kConfidence = 0.99;
+constexpr int kOrbFeatures = 2000;
+constexpr double kMserSupport = 2.5;  // side of the described square in region diameters
+
+ImageFeatures describe(const cv::Mat& image, std::vector<cv::KeyPoint> points,
+                       cv::Feature2D& descriptor) {
+  ImageFeatures features;
+  descriptor.compute(image, points, features.descriptors);
+  cv::KeyPoint::convert(points, features.points);
+  return features;
+}
+
+ImageFeatures detectAndDescribe(const cv::Mat& image, cv::Feature2D& method) {
+  ImageFeatures features;
+  std::vector<cv::KeyPoint> points;
+  method.detectAndCompute(image, cv::noArray(), points, features.descriptors);
+  cv::KeyPoint::convert(points, features.points);
+  return features;
+}
+
+std::vector<cv::KeyPoint> detect(const cv::Mat& image, cv::Feature2D& detector) {
+  std::vector<cv::KeyPoint> points;
+  detector.detect(image, points);
+  return points;
+}
+
+std::vector<SurfPlace> mserPlaces(const cv::Mat& image) {
+  std::vector<SurfPlace> places;
+  for (const cv::KeyPoint& region : detect(image, *cv::MSER::create())) {
+    places.push_back({region.pt, kMserSupport * region.size});
+  }
+  return places;
+}
+
+}  // namespace
+
+const char* toString(FeatureMethod method) {
+  switch (method) {
+    case FeatureMethod::kSurf:
+      return "SURF";
+    case FeatureMethod::kFastBrisk:
+      return "FAST+BRISK";
+    case FeatureMethod::kMserSurf:
+      return "MSER+SURF";
+    case FeatureMethod::kMserOrb:
+      return "MSER+ORB";
+    case FeatureMethod::kBrisk:
+      return "BRISK";
+    case FeatureMethod::kOrb:
+      return "ORB";
+  }
+  return "unknown";
+}
+
+bool needsDlib(FeatureMethod method) {
+  return method == FeatureMethod::kSurf || method == FeatureMethod::kMserSurf;
+}
+
+ImageFeatures findFeatures(const cv::Mat& image, FeatureMethod method) {
+  requireMono8(image, "feature detection");
+  switch (method) {
+    case FeatureMethod::kSurf:
+      return findSurf(image);
+    case FeatureMethod::kFastBrisk:
+      return describe(image, detect(image, *cv::FastFeatureDetector::create()),
+                      *cv::BRISK::create());
+    case FeatureMethod::kMserSurf:
+      return describeSurf(image, mserPlaces(image));
+    case FeatureMethod::kMserOrb:
+      return describe(image, detect(image, *cv::MSER::create()), *cv::ORB::create());
+    case FeatureMethod::kBrisk:
+      return detectAndDescribe(image, *cv::BRISK::create());
+    case FeatureMethod::kOrb:
+      return detectAndDescribe(image, *cv::ORB::create(kOrbFeatures));
+  }
+  return {};
+}
+
+MatchCounts matchFeatures(const ImageFeatures& first, const ImageFeatures& second) {
+  constexpr std::size_t kNeighbours = 2;
+  MatchCounts counts;
+  counts.features_first = static_cast<int>(first.points.size());
+  counts.features_second = static_cast<int>(second.points.size());
+  if (first.points.empty() || second.points.size() < kNeighbours) {
+    return counts;
+  }
+  const int norm = first.descriptors.type() == CV_32F ? cv::NORM_L2 : cv::NORM_HAMMING;
+  std::vector<std::vector<cv::DMatch>> neighbours;
+  cv::BFMatcher(norm).knnMatch(first.descriptors, second.descriptors, neighbours,
+                               static_cast<int>(kNeighbours));
+  std::vector<cv::Point2f> from;
+  std::vector<cv::Point2f> to;
+  for (const std::vector<cv::DMatch>& pair : neighbours) {
+    if (pair.size() == kNeighbours && pair[0].distance < kRatio * pair[1].distance) {
+      from.push_back(first.points[static_cast<std::size_t>(pair[0].queryIdx)]);
+      to.push_back(second.points[static_cast<std::size_t>(pair[0].trainIdx)]);
+    }
+  }
+  counts.matches = static_cast<int>(from.size());
+  if (counts.matches < kMinMatchesForModel) {
+    return counts;
+  }
+  cv::Mat inliers;
+  cv::findFundamentalMat(from, to, cv::FM_RANSAC, kInlierDistancePx, kConfidence, inliers);
+  counts.inliers = inliers.empty() ? 0 : cv::countNonZero(inliers);
+  return counts;
+}
+
+}  // namespace fast_edi
