@@ -1,0 +1,112 @@
+/// \file
+/// The ROS side of the pipeline, the same for node and nodelet: topics, parameters, clock and
+/// diagnostics around a Deblurrer. Topic names are relative; README lists them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <dynamic_reconfigure/Config.h>
+#include <image_transport/image_transport.h>
+#include <ros/node_handle.h>
+#include <ros/steady_timer.h>
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/Image.h>
+#include <std_msgs/Int32.h>
+
+#include "fast_edi/config/parameters_from_yaml.hpp"
+#include "fast_edi/core/deblurrer.hpp"
+#include "fast_edi/ros/comparison_view.hpp"
+#include "fast_edi/ros/event_subscription.hpp"
+#include "fast_edi/ros/latency_record.hpp"
+#include "fast_edi/ros/message_frame_sink.hpp"
+#include "fast_edi/ros/node_diagnostics.hpp"
+
+namespace fast_edi {
+
+/// Threads. The node handles' callback queue must call one callback at a time (a nodelet's
+/// getNodeHandle(), ros::spin()), because events, frames and exposures have to be handled in the
+/// order of their arrival. One mutex serialises the callbacks besides, since that queue already
+/// runs in another thread while the constructor is still at work. Subscriptions are ended without
+/// holding it: ending one waits for its callback, which may be waiting for the mutex.
+///
+/// No exception leaves a callback: one that gets here is logged, reported and the pipeline starts
+/// anew.
+class DeblurNode {
+ public:
+  /// A configuration that cannot be used is logged and reported on /diagnostics; the object then
+  /// stays idle, see configurationError().
+  /// \param name as shown in log and diagnostics, with a leading slash
+  DeblurNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, const std::string& name);
+  ~DeblurNode();
+  DeblurNode(const DeblurNode&) = delete;
+  DeblurNode& operator=(const DeblurNode&) = delete;
+
+  /// Empty unless the configuration was refused.
+  const std::string& configurationError() const { return configuration_error_; }
+
+ private:
+  /// Input subscriptions, which come and go together.
+  struct Inputs {
+    image_transport::Subscriber image;
+    ros::Subscriber camera_info;
+    ros::Subscriber exposure;
+    ros::Subscriber bias_updates;
+    std::unique_ptr<EventSubscription> events;
+  };
+
+  void configure();
+  void advertise();
+  void subscribersChanged();
+  std::unique_ptr<Inputs> subscribe();
+
+  void receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence);
+  void receiveImage(const sensor_msgs::ImageConstPtr& message);
+  void receiveCameraInfo(const sensor_msgs::CameraInfoConstPtr& message);
+  void receiveExposure(const std_msgs::Int32ConstPtr& message);
+  void receiveBiasUpdate(const dynamic_reconfigure::ConfigConstPtr& message);
+  void advanceClock();
+  void report();
+
+  void deliver(const sensor_msgs::ImagePtr& image, const sensor_msgs::CameraInfoPtr& info,
+               const OutputFrame& output);
+  void publishComparison(const sensor_msgs::Image& image, const OutputFrame& output);
+  NodeSnapshot snapshot(std::int64_t now_ns) const;
+  void warnThrottled(const std::string& kind, const std::string& text, std::int64_t now_ns);
+
+  /// Runs a callback's work under the mutex.
+  template <typename Work>
+  void guarded(Work&& work);
+
+  ros::NodeHandle nh_;
+  ros::NodeHandle private_nh_;
+  std::string name_;
+  std::string configuration_error_;
+  InputTopics topics_;
+  LoadedParameters parameters_;
+
+  std::mutex mutex_;
+  std::optional<MessageFrameSink> sink_;
+  std::unique_ptr<Deblurrer> deblurrer_;  ///< null when idle for good
+  ComparisonView comparison_;
+  LatencyRecord close_latency_;
+  LatencyRecord output_latency_;
+  NodeDiagnostics diagnostics_;
+  NodeSnapshot totals_;  ///< the part of the snapshot that is counted here
+  std::int64_t callback_start_ns_ = 0;
+  std::unordered_map<std::string, std::int64_t> last_warning_ns_;  ///< by kind
+
+  image_transport::CameraPublisher deblurred_publisher_;
+  image_transport::Publisher comparison_publisher_;
+  std::optional<diagnostic_updater::Updater> updater_;
+  ros::SteadyTimer advance_timer_;
+  ros::SteadyTimer report_timer_;
+  std::unique_ptr<Inputs> inputs_;  ///< null while nobody listens
+};
+
+}  // namespace fast_edi

@@ -1,0 +1,60 @@
+/// \file
+/// Subscription to event arrays from whoever publishes them.
+///
+/// From another process an array comes as bytes, which EventArray keeps as they are. From a
+/// publisher in the same process (the driver in the same nodelet manager) it comes as a pointer,
+/// without having been serialised, when this package was built with the `dvs_msgs` package
+/// (FAST_EDI_HAVE_DVS_MSGS); else roscpp serialises it for us.
+///
+/// roscpp hands a pointer over only to a subscriber of the very C++ type that was published, and a
+/// subscriber of the generated type receives bytes by the slow generated code. So the type is
+/// chosen by where the publisher is: the generated one from the moment that this process publishes
+/// the topic. A publisher that starts later is noticed by its first array; arrays that get lost
+/// while the subscription is replaced are announced as a hole in the sequence.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <ros/node_handle.h>
+#include <ros/subscriber.h>
+#include <boost/shared_ptr.hpp>
+
+#include "fast_edi/core/event_wire.hpp"
+#include "fast_edi/core/types.hpp"
+#include "fast_edi/ros/event_array.hpp"
+
+namespace fast_edi {
+
+class EventSubscription {
+ public:
+  /// \param size of the sensor, {0, 0} when what the array says is impossible
+  using Handler =
+      std::function<void(const WireEvents& events, SensorSize size, std::uint32_t sequence)>;
+
+  /// \param handler called from \p nh's callback queue
+  EventSubscription(const ros::NodeHandle& nh, const std::string& topic, std::uint32_t queue_size,
+                    Handler handler);
+  EventSubscription(const EventSubscription&) = delete;
+  EventSubscription& operator=(const EventSubscription&) = delete;
+
+  /// True while arrays are taken as pointers to the generated type.
+  bool takesPointers() const { return takes_pointers_; }
+
+ private:
+  void receive(const ros::MessageEvent<const EventArray>& event);
+  void subscribeToWire();
+  void subscribeToPointers();
+
+  ros::NodeHandle nh_;
+  std::string topic_;
+  std::uint32_t queue_size_;
+  Handler handler_;
+  bool takes_pointers_ = false;
+  std::vector<std::uint8_t> records_;  ///< packed events of the array at hand
+  ros::Subscriber subscriber_;         ///< last: its callbacks use the members above
+};
+
+}  // namespace fast_edi

@@ -1,0 +1,20 @@
+// Deblurs frames in a process of its own.
+
+#include <cstdlib>
+
+#include <ros/init.h>
+#include <ros/node_handle.h>
+#include <ros/this_node.h>
+
+#include "fast_edi/ros/deblur_node.hpp"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "deblur_node");
+  const ros::NodeHandle nh;
+  const fast_edi::DeblurNode node(nh, ros::NodeHandle("~"), ros::this_node::getName());
+  if (!node.configurationError().empty()) {
+    return EXIT_FAILURE;  // the message is in the log already
+  }
+  ros::spin();
+  return EXIT_SUCCESS;
+}

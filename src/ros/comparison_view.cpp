@@ -1,0 +1,77 @@
+#include "fast_edi/ros/comparison_view.hpp"
+
+#include <algorithm>
+
+#include <cv_bridge/cv_bridge.h>
+#include <sensor_msgs/image_encodings.h>
+#include <boost/shared_ptr.hpp>
+#include <opencv2/core.hpp>
+
+namespace fast_edi {
+namespace {
+
+namespace encodings = sensor_msgs::image_encodings;
+
+/// Each event takes this much of the other two colours, so that some four events saturate.
+constexpr int kShadePerEvent_dn = 64;
+
+cv::Mat toColor(const sensor_msgs::Image& image) {
+  // cv_bridge takes 8UC1 for a matrix without colour, which here it is not.
+  if (image.encoding == encodings::TYPE_8UC1) {
+    sensor_msgs::Image mono = image;
+    mono.encoding = encodings::MONO8;
+    return cv_bridge::toCvCopy(mono, encodings::BGR8)->image;
+  }
+  return cv_bridge::toCvCopy(image, encodings::BGR8)->image;
+}
+
+void darken(std::uint8_t& channel) {
+  channel = static_cast<std::uint8_t>(std::max(0, channel - kShadePerEvent_dn));
+}
+
+}  // namespace
+
+void ComparisonView::addEvents(const WireEvents& events) {
+  const WireEvents recent =
+      events.count > kMaxEvents ? events.from(events.count - kMaxEvents) : events;
+  if (recent.empty()) {
+    return;
+  }
+  arrays_.emplace_back(recent.data, recent.data + recent.count * kWireEventBytes);
+  event_count_ += recent.count;
+  while (event_count_ > kMaxEvents) {
+    event_count_ -= arrays_.front().size() / kWireEventBytes;
+    arrays_.pop_front();
+  }
+}
+
+void ComparisonView::clear() {
+  arrays_.clear();
+  event_count_ = 0;
+}
+
+sensor_msgs::ImagePtr ComparisonView::draw(const sensor_msgs::Image& input,
+                                           const sensor_msgs::Image& output,
+                                           const ExposureInterval& window) const {
+  const cv::Mat blurry = toColor(input);
+  const cv::Mat latent = toColor(output);
+  cv::Mat drawn(blurry.size(), CV_8UC3, cv::Scalar::all(255));
+  for (const std::vector<std::uint8_t>& array : arrays_) {
+    const WireEvents events{array.data(), array.size() / kWireEventBytes};
+    for (std::size_t i = 0; i < events.count; ++i) {
+      const Event event = decodeWireEvent(events.record(i));
+      if (event.t_ns < window.start_ns || event.t_ns >= window.end_ns || event.x >= drawn.cols ||
+          event.y >= drawn.rows) {
+        continue;
+      }
+      cv::Vec3b& pixel = drawn.at<cv::Vec3b>(event.y, event.x);
+      darken(pixel[1]);
+      darken(pixel[event.on ? 0 : 2]);
+    }
+  }
+  cv_bridge::CvImage picture(output.header, encodings::BGR8);
+  cv::hconcat(std::vector<cv::Mat>{blurry, drawn, latent}, picture.image);
+  return picture.toImageMsg();
+}
+
+}  // namespace fast_edi

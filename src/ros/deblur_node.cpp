@@ -1,0 +1,297 @@
+#include "fast_edi/ros/deblur_node.hpp"
+
+#include <chrono>
+#include <exception>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <ros/console.h>
+#include <ros/transport_hints.h>
+
+#include "fast_edi/core/contrast_from_bias.hpp"
+#include "fast_edi/ros/bias_update.hpp"
+#include "fast_edi/ros/message_conversion.hpp"
+#include "fast_edi/ros/parameter_loading.hpp"
+
+namespace fast_edi {
+namespace {
+
+constexpr std::uint32_t kEventQueue = 1000;
+constexpr std::uint32_t kImageQueue = 100;
+constexpr std::uint32_t kExposureQueue = 100;
+constexpr std::uint32_t kLatestWins = 1;
+constexpr std::uint32_t kOutputQueue = 100;
+/// A fraction of the shortest sensible close timeout.
+const ros::WallDuration kAdvancePeriod(0.004);
+const ros::WallDuration kReportPeriod(1.0);
+constexpr std::int64_t kWarningInterval_ns = 10 * kNanosecondsPerSecond;
+
+std::int64_t steadyNow() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+DeblurNode::DeblurNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh,
+                       const std::string& name)
+    : nh_(nh),
+      private_nh_(private_nh),
+      name_(name),
+      topics_{nh_.resolveName("events"), nh_.resolveName("image_raw"), nh_.resolveName("exposure"),
+              nh_.resolveName("bias_updates")},
+      diagnostics_(topics_) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  updater_.emplace(nh_, private_nh_, name_);
+  updater_->setHardwareID("none");
+  updater_->add("deblurring", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    diagnostics_.fill(close_latency_, output_latency_, status);
+  });
+  configure();
+  if (deblurrer_) {
+    advertise();
+    advance_timer_ = nh_.createSteadyTimer(
+        kAdvancePeriod, [this](const ros::SteadyTimerEvent&) { advanceClock(); }, false, false);
+    if (!parameters_.ros.lazy) {
+      inputs_ = subscribe();
+    }
+  }
+  report_timer_ =
+      nh_.createSteadyTimer(kReportPeriod, [this](const ros::SteadyTimerEvent&) { report(); });
+}
+
+DeblurNode::~DeblurNode() {
+  report_timer_.stop();
+  advance_timer_.stop();
+  deblurred_publisher_.shutdown();
+  comparison_publisher_.shutdown();
+  inputs_.reset();
+}
+
+void DeblurNode::configure() {
+  try {
+    parameters_ = parametersFromYaml(privateParameters(private_nh_), "");
+    sink_.emplace(parameters_.ros.frame_id,
+                  [this](const sensor_msgs::ImagePtr& image, const sensor_msgs::CameraInfoPtr& info,
+                         const OutputFrame& output) { deliver(image, info, output); });
+    deblurrer_ = std::make_unique<Deblurrer>(parameters_.deblur, *sink_);
+  } catch (const std::exception& error) {
+    configuration_error_ = error.what();
+    ROS_ERROR_STREAM(name_ << " stays idle, its configuration in " << private_nh_.getNamespace()
+                           << " was refused:\n"
+                           << configuration_error_);
+    return;
+  }
+  for (const std::string& warning : parameters_.warnings) {
+    ROS_WARN_STREAM(name_ << ": " << warning);
+  }
+  const ContrastThresholds& thresholds = parameters_.deblur.thresholds;
+  ROS_INFO_STREAM(name_ << ": contrast thresholds ON " << thresholds.on << ", OFF "
+                        << thresholds.off << " from " << parameters_.contrast_origin);
+}
+
+void DeblurNode::advertise() {
+  image_transport::ImageTransport transport(nh_);
+  const image_transport::SubscriberStatusCallback image_changed =
+      [this](const image_transport::SingleSubscriberPublisher&) { subscribersChanged(); };
+  const ros::SubscriberStatusCallback info_changed = [this](const ros::SingleSubscriberPublisher&) {
+    subscribersChanged();
+  };
+  deblurred_publisher_ =
+      transport.advertiseCamera("deblurred/image_raw", kOutputQueue, image_changed, image_changed,
+                                info_changed, info_changed);
+  comparison_publisher_ =
+      transport.advertise("comparison", kLatestWins, image_changed, image_changed);
+}
+
+std::unique_ptr<DeblurNode::Inputs> DeblurNode::subscribe() {
+  const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
+  auto inputs = std::make_unique<Inputs>();
+  inputs->camera_info =
+      nh_.subscribe("camera_info", kLatestWins, &DeblurNode::receiveCameraInfo, this, no_delay);
+  if (parameters_.from_biases.on || parameters_.from_biases.off) {
+    inputs->bias_updates =
+        nh_.subscribe("bias_updates", kLatestWins, &DeblurNode::receiveBiasUpdate, this, no_delay);
+  }
+  if (parameters_.deblur.exposure_source == ExposureSource::kTopic) {
+    inputs->exposure =
+        nh_.subscribe("exposure", kExposureQueue, &DeblurNode::receiveExposure, this, no_delay);
+  }
+  inputs->events = std::make_unique<EventSubscription>(
+      nh_, "events", kEventQueue,
+      [this](const WireEvents& events, SensorSize size, std::uint32_t sequence) {
+        receiveEvents(events, size, sequence);
+      });
+  inputs->image = image_transport::ImageTransport(nh_).subscribe(
+      "image_raw", kImageQueue, &DeblurNode::receiveImage, this,
+      image_transport::TransportHints("raw", no_delay, private_nh_));
+  totals_.listening_since_ns = steadyNow();
+  totals_.last_frame_ns = 0;
+  totals_.last_events_ns = 0;
+  advance_timer_.start();
+  return inputs;
+}
+
+void DeblurNode::subscribersChanged() {
+  std::unique_ptr<Inputs> ended;  // destroyed after the mutex is released
+  guarded([this, &ended] {
+    if (!parameters_.ros.lazy) {
+      return;
+    }
+    const bool wanted = deblurred_publisher_.getNumSubscribers() > 0 ||
+                        comparison_publisher_.getNumSubscribers() > 0;
+    if (wanted && !inputs_) {
+      inputs_ = subscribe();
+    } else if (!wanted && inputs_) {
+      ended = std::move(inputs_);
+      advance_timer_.stop();
+      deblurrer_->pause();
+      comparison_.clear();
+    }
+  });
+}
+
+template <typename Work>
+void DeblurNode::guarded(Work&& work) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  callback_start_ns_ = steadyNow();
+  try {
+    work();
+  } catch (const std::exception& error) {
+    ++totals_.internal_errors;
+    totals_.internal_error = error.what();
+    warnThrottled("internal error", totals_.internal_error, callback_start_ns_);
+    if (deblurrer_) {
+      deblurrer_->pause();
+    }
+  }
+}
+
+void DeblurNode::receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence) {
+  guarded([&] {
+    totals_.last_events_ns = callback_start_ns_;
+    if (comparison_publisher_.getNumSubscribers() > 0) {
+      comparison_.addEvents(events);  // first: these events may close the frame they belong to
+    } else {
+      comparison_.clear();
+    }
+    deblurrer_->addEvents(events, size, sequence, callback_start_ns_);
+  });
+}
+
+void DeblurNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
+  guarded([&] {
+    totals_.last_frame_ns = callback_start_ns_;
+    const ImageReading reading = readImage(*message);
+    if (reading.verdict == ImageVerdict::kMalformed) {
+      ++totals_.frames_malformed;
+      totals_.malformed_reason = reading.reason;
+      return;
+    }
+    if (reading.verdict == ImageVerdict::kUnsupported) {
+      totals_.unsupported_reason = reading.reason;
+    }
+    deblurrer_->addFrame(makeInputFrame(message, reading, callback_start_ns_), callback_start_ns_);
+  });
+}
+
+void DeblurNode::receiveCameraInfo(const sensor_msgs::CameraInfoConstPtr& message) {
+  guarded([&] { sink_->setCameraInfo(message); });
+}
+
+void DeblurNode::receiveExposure(const std_msgs::Int32ConstPtr& message) {
+  guarded([&] { deblurrer_->addExposure(message->data, callback_start_ns_); });
+}
+
+void DeblurNode::receiveBiasUpdate(const dynamic_reconfigure::ConfigConstPtr& message) {
+  guarded([&] {
+    try {
+      const auto thresholds = thresholdsAfterBiasUpdate(parameters_, *message);
+      if (!thresholds || *thresholds == deblurrer_->parameters().thresholds) {
+        return;
+      }
+      DeblurParameters changed = deblurrer_->parameters();
+      changed.thresholds = *thresholds;
+      deblurrer_->setParameters(changed);
+      parameters_.contrast_origin = "biases on " + topics_.bias_updates;
+      ROS_INFO_STREAM(name_ << ": contrast thresholds ON " << thresholds->on << ", OFF "
+                            << thresholds->off << " from " << parameters_.contrast_origin);
+      for (const std::string& warning : contrastWarnings(*thresholds)) {
+        ROS_WARN_STREAM(name_ << ": " << warning);
+      }
+    } catch (const std::invalid_argument& error) {
+      ++totals_.bias_updates_refused;
+      totals_.bias_refusal = error.what();
+    }
+  });
+}
+
+void DeblurNode::advanceClock() {
+  guarded([&] { deblurrer_->advance(callback_start_ns_); });
+}
+
+void DeblurNode::deliver(const sensor_msgs::ImagePtr& image, const sensor_msgs::CameraInfoPtr& info,
+                         const OutputFrame& output) {
+  deblurred_publisher_.publish(image, info);
+  ++totals_.frames_out;
+  const std::int64_t published_ns = steadyNow();
+  close_latency_.add(published_ns - callback_start_ns_);
+  output_latency_.add(published_ns - messageFrame(output.input).arrival_ns);
+  if (output.input.supported && comparison_publisher_.getNumSubscribers() > 0) {
+    publishComparison(*image, output);
+  }
+}
+
+void DeblurNode::publishComparison(const sensor_msgs::Image& image, const OutputFrame& output) {
+  const std::int64_t offset_ns = deblurrer_->parameters().time_offset_ns;
+  const ExposureInterval window{output.exposure.start_ns + offset_ns,
+                                output.exposure.end_ns + offset_ns};
+  try {
+    comparison_publisher_.publish(
+        comparison_.draw(*messageFrame(output.input).message, image, window));
+  } catch (const std::exception& error) {
+    // A picture for people must not disturb the pipeline that it is drawn in the middle of.
+    warnThrottled("comparison", std::string("no comparison picture: ") + error.what(),
+                  callback_start_ns_);
+  }
+}
+
+NodeSnapshot DeblurNode::snapshot(std::int64_t now_ns) const {
+  NodeSnapshot now = totals_;
+  now.time_ns = now_ns;
+  now.configuration_error = configuration_error_;
+  now.listening = inputs_ != nullptr;
+  now.contrast_origin = parameters_.contrast_origin;
+  if (deblurrer_) {
+    now.counters = deblurrer_->counters();
+    now.status = deblurrer_->status();
+    now.thresholds = deblurrer_->parameters().thresholds;
+  }
+  return now;
+}
+
+void DeblurNode::report() {
+  guarded([&] {
+    diagnostics_.update(snapshot(callback_start_ns_));
+    for (const Complaint& complaint : diagnostics_.complaints()) {
+      warnThrottled(complaint.kind, complaint.text, callback_start_ns_);
+    }
+    updater_->force_update();
+  });
+}
+
+void DeblurNode::warnThrottled(const std::string& kind, const std::string& text,
+                               std::int64_t now_ns) {
+  // Not ROS_WARN_THROTTLE: that one throttles by a line of source, for all nodelets of a manager
+  // together, and by a clock that stands still with a paused bag.
+  const auto last = last_warning_ns_.find(kind);
+  if (last != last_warning_ns_.end() && now_ns - last->second < kWarningInterval_ns) {
+    return;
+  }
+  last_warning_ns_[kind] = now_ns;
+  ROS_WARN_STREAM(name_ << ": " << text);
+}
+
+}  // namespace fast_edi
