@@ -2,9 +2,12 @@
 /// The whole pipeline without ROS: events, frames and exposure messages go in as they arrive, one
 /// image for each frame comes out. Live nodelet and `deblur_bag` both run this class.
 ///
-///     events ----> EventStream ----> PixelEventLists ---+
-///     frames ----> ExposureWindow --(window known)------+--> DoubleIntegral -> CameraResponse ->
-///     sink exposure --> ExposureWindow
+///     events ------> EventStream -> PixelEventLists --+
+///     frames ------> ExposureWindow (window known) ---+-> DoubleIntegral -> CameraResponse -> sink
+///     exposures ---> ExposurePairing --^
+///
+/// Frames wait in one queue and leave it in the order of their arrival. WindowPredictor tells
+/// DoubleIntegral beforehand which window comes next.
 ///
 /// Clock. `now_ns` is the arrival time on a clock that never goes back: a steady clock live, the
 /// bag's record time offline. It serves the close timeout alone and is never compared with stamps.
@@ -13,13 +16,11 @@
 /// except std::bad_alloc.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
-#include <string>
 
+#include "fast_edi/core/deblur_counters.hpp"
 #include "fast_edi/core/event_wire.hpp"
 #include "fast_edi/core/image.hpp"
 #include "fast_edi/core/parameters.hpp"
@@ -28,26 +29,13 @@
 namespace fast_edi {
 
 /// A frame as it came in. `owner` keeps the memory behind `image` alive and lets the sink find the
-/// message it came from.
+/// message it came from. The view of a frame that is not supported may be empty.
 struct InputFrame {
   std::int64_t stamp_ns = 0;
   ImageView image;
   bool supported = true;  ///< false: the encoding is not one we deblur; passed through
   std::shared_ptr<const void> owner;
 };
-
-/// Why a frame was passed through unchanged.
-enum class PassReason {
-  kPassthroughParameter,  ///< `passthrough` is set
-  kUnsupportedEncoding,
-  kSizeMismatch,     ///< frame and event array differ in size
-  kExposureUnknown,  ///< neither topic nor parameter
-  kNoEventStream,    ///< start-up: no event array was ever seen
-  kEventsMissing,    ///< start-up, flush, overflow or a gap inside the exposure
-};
-constexpr std::size_t kPassReasonCount = 6;
-/// A short phrase for people, e.g. "exposure unknown".
-const char* toString(PassReason reason);
 
 /// What became of a frame.
 struct OutputFrame {
@@ -63,39 +51,11 @@ struct OutputFrame {
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
-  /// Memory for the output of \p input: same size and format, written before finish().
+  /// Memory for the output of \p input: same size and format, written before finish(). An empty
+  /// view for an empty view: what that frame's output holds is then the sink's own matter.
   virtual MutableImageView begin(const InputFrame& input) = 0;
   /// The memory handed out by the last begin() now holds the image that \p output describes.
   virtual void finish(const OutputFrame& output) = 0;
-};
-
-/// Counts since construction. Nothing is lost without one of these moving.
-struct DeblurCounters {
-  std::uint64_t events_in = 0;          ///< records that arrived
-  std::uint64_t events_late = 0;        ///< older than the newest: dropped
-  std::uint64_t events_outside = 0;     ///< not on the sensor: dropped
-  std::uint64_t events_glitched = 0;    ///< unconfirmed time jump: dropped
-  std::uint64_t events_overflowed = 0;  ///< max_buffered_events reached: oldest dropped
-  std::uint64_t event_arrays = 0;
-  std::uint64_t event_array_gaps = 0;  ///< holes in header.seq
-  std::uint64_t event_time_jumps = 0;
-  std::uint64_t frame_time_jumps = 0;
-  std::uint64_t size_changes = 0;  ///< sensor size of the event arrays changed
-  std::uint64_t frames_in = 0;
-  std::uint64_t frames_deblurred = 0;
-  std::uint64_t frames_still = 0;      ///< of those: no event in the exposure
-  std::uint64_t frames_timed_out = 0;  ///< closed by close_timeout with what had come
-  std::array<std::uint64_t, kPassReasonCount> frames_passed{};
-  std::uint64_t frames_suppressed = 0;  ///< output stamp not later than the last one: no output
-  std::uint64_t exposures_in = 0;
-  std::uint64_t exposures_refused = 0;  ///< <= 0 or > 1 s
-  std::uint64_t exposures_surplus = 0;
-  std::uint64_t exposures_missing = 0;
-  std::uint64_t closes_followed = 0;  ///< window had been predicted
-  std::uint64_t closes_surprise = 0;
-  std::uint64_t pixels_out_of_range = 0;
-
-  std::uint64_t framesPassed() const;
 };
 
 /// State of the moment, for diagnostics.

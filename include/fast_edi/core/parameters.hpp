@@ -32,4 +32,12 @@ struct DeblurParameters {
   bool passthrough = false;  ///< publish every frame unchanged
 };
 
+constexpr std::int64_t kMaxExposure_ns = kNanosecondsPerSecond;
+/// Stamps are 32-bit seconds; with these limits no sum of stamp, offset and jump limit overflows.
+constexpr std::int64_t kMaxTimeOffset_ns = 3'000'000'000 * kNanosecondsPerSecond;
+constexpr std::int64_t kMaxTimeLimit_ns = 1'000'000'000 * kNanosecondsPerSecond;
+
+/// \throws std::invalid_argument naming the parameter, its value and what was expected
+void validate(const DeblurParameters& parameters);
+
 }  // namespace fast_edi

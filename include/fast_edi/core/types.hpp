@@ -52,7 +52,9 @@ struct ExposureInterval {
 
   std::int64_t length() const { return end_ns - start_ns; }
 
-  /// The middle is rounded down, as the driver does it (start = stamp - floor(L / 2)).
+  /// The middle is rounded down to whole microseconds after the start, as the driver does it
+  /// (start = stamp - floor(L / 2) us): the stamp that a driver gives the middle comes back
+  /// exactly.
   std::int64_t at(ExposureInstant instant) const {
     switch (instant) {
       case ExposureInstant::kStart:
@@ -62,7 +64,7 @@ struct ExposureInterval {
       case ExposureInstant::kMid:
         break;
     }
-    return start_ns + length() / 2;
+    return start_ns + length() / 2 / kNanosecondsPerMicrosecond * kNanosecondsPerMicrosecond;
   }
   friend bool operator==(const ExposureInterval& a, const ExposureInterval& b) {
     return a.start_ns == b.start_ns && a.end_ns == b.end_ns;

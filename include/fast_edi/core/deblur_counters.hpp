@@ -1,0 +1,55 @@
+/// \file
+/// What the pipeline counts, and the reasons for which it passes frames through.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace fast_edi {
+
+/// Why a frame was passed through unchanged.
+enum class PassReason {
+  kPassthroughParameter,  ///< `passthrough` is set
+  kUnsupportedEncoding,
+  kSizeMismatch,     ///< frame and event array differ in size
+  kExposureUnknown,  ///< neither topic nor parameter
+  kNoEventStream,    ///< start-up: no event array was ever seen
+  kEventsMissing,    ///< start-up, flush, overflow or a gap inside the exposure
+};
+constexpr std::size_t kPassReasonCount = 6;
+/// A short phrase for people, e.g. "exposure unknown".
+const char* toString(PassReason reason);
+
+/// Counts since construction. Nothing is lost without one of these moving.
+struct DeblurCounters {
+  std::uint64_t events_in = 0;          ///< records that arrived
+  std::uint64_t events_late = 0;        ///< older than the newest: dropped
+  std::uint64_t events_outside = 0;     ///< not on the sensor: dropped
+  std::uint64_t events_glitched = 0;    ///< unconfirmed time jump: dropped
+  std::uint64_t events_refused = 0;     ///< in an array without a valid sensor size: dropped
+  std::uint64_t events_overflowed = 0;  ///< max_buffered_events reached: oldest dropped
+  std::uint64_t event_arrays = 0;
+  std::uint64_t event_arrays_refused = 0;  ///< width or height not within 1..32767
+  std::uint64_t event_array_gaps = 0;      ///< holes in header.seq
+  std::uint64_t event_time_jumps = 0;
+  std::uint64_t frame_time_jumps = 0;
+  std::uint64_t size_changes = 0;  ///< sensor size of the event arrays changed
+  std::uint64_t frames_in = 0;
+  std::uint64_t frames_deblurred = 0;
+  std::uint64_t frames_still = 0;      ///< of those: no event in the exposure
+  std::uint64_t frames_timed_out = 0;  ///< closed by close_timeout with what had come
+  std::array<std::uint64_t, kPassReasonCount> frames_passed{};
+  std::uint64_t frames_suppressed = 0;  ///< output stamp not later than the last one: no output
+  std::uint64_t exposures_in = 0;
+  std::uint64_t exposures_refused = 0;  ///< <= 0 or > 1 s
+  std::uint64_t exposures_surplus = 0;
+  std::uint64_t exposures_missing = 0;
+  std::uint64_t closes_followed = 0;  ///< window had been predicted
+  std::uint64_t closes_surprise = 0;
+  std::uint64_t pixels_out_of_range = 0;
+
+  std::uint64_t framesPassed() const;
+};
+
+}  // namespace fast_edi

@@ -1,0 +1,525 @@
+#include "fast_edi/core/deblurrer.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "fast_edi/core/double_integral.hpp"
+#include "fast_edi/core/event_stream.hpp"
+#include "fast_edi/core/exposure_pairing.hpp"
+#include "fast_edi/core/exposure_window.hpp"
+#include "fast_edi/core/window_predictor.hpp"
+
+namespace fast_edi {
+namespace {
+
+/// As many as the image queue of the nodelet holds. More can only wait when something is wrong, and
+/// memory must not grow with it.
+constexpr std::size_t kMaxWaitingFrames = 100;
+
+/// Running sums of a window this close to the true one are still of use to DoubleIntegral.
+constexpr std::int64_t kUsefulPrediction_ns = 50 * kNanosecondsPerMicrosecond;
+
+PixelEventLists::Limits limitsOf(const DeblurParameters& parameters) {
+  return {parameters.max_buffered_events, parameters.max_backward_jump_ns,
+          parameters.max_forward_jump_ns};
+}
+
+void copyImage(const ImageView& in, const MutableImageView& out) {
+  if (in.data == nullptr || out.data == nullptr) {
+    return;  // an unsupported frame: its pixels are the sink's own matter
+  }
+  const std::size_t row_bytes =
+      static_cast<std::size_t>(in.size.width) * static_cast<std::size_t>(bytesPerPixel(in.format));
+  for (int y = 0; y < in.size.height; ++y) {
+    std::memcpy(out.row(y), in.row(y), row_bytes);
+  }
+}
+
+struct WaitingFrame {
+  InputFrame input;
+  std::uint64_t number;  ///< in order of arrival
+  std::uint64_t epoch;   ///< of the frames' clock
+  bool after_time_jump;  ///< that epoch began with a jump back
+  std::int64_t arrival_ns;
+  ExposureWindow window;
+};
+
+/// What DoubleIntegral was told to expect, in event time.
+struct Expectation {
+  ExposureInterval window;
+  std::int64_t reference_ns;
+
+  bool isNear(const Expectation& other) const {
+    const auto near = [](std::int64_t a_ns, std::int64_t b_ns) {
+      return std::abs(a_ns - b_ns) <= kUsefulPrediction_ns;
+    };
+    return near(window.start_ns, other.window.start_ns) &&
+           near(window.end_ns, other.window.end_ns) && near(reference_ns, other.reference_ns);
+  }
+};
+
+}  // namespace
+
+class Deblurrer::Impl {
+ public:
+  Impl(const DeblurParameters& parameters, FrameSink& sink)
+      : parameters_(parameters),
+        sink_(sink),
+        pairing_(parameters.close_timeout_ns, counters_),
+        events_(limitsOf(parameters), counters_,
+                [this](StreamBreak kind, std::int64_t next_ns) { beforeBreak(kind, next_ns); }) {}
+
+  void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
+                 std::int64_t now_ns);
+  void addFrame(InputFrame frame, std::int64_t now_ns);
+  void addExposure(std::int32_t exposure_us, std::int64_t now_ns);
+  void advance(std::int64_t now_ns);
+  void finish();
+  void pause();
+  void setParameters(const DeblurParameters& parameters);
+
+  const DeblurParameters& parameters() const { return parameters_; }
+  const DeblurCounters& counters() const { return counters_; }
+  DeblurStatus status() const;
+
+ private:
+  // Frames in
+  void beginFrameEpoch(bool after_time_jump);
+  void takeMatches();
+  void settle(WaitingFrame& frame);
+
+  // Frames out
+  bool isOutOfTime(const WaitingFrame& frame) const;
+  FrameVerdict judge(const WaitingFrame& frame, bool out_of_time) const;
+  void closeReady();
+  void closeFront(const FrameVerdict& verdict);
+  void closeFrontWithWhatHasCome();
+  void beforeBreak(StreamBreak kind, std::int64_t next_event_ns);
+  void deblur(OutputFrame& output, const ExposureInterval& window);
+  void passThrough(OutputFrame& output, PassReason reason);
+  bool isLaterThanLastOutput(const WaitingFrame& frame, std::int64_t stamp_ns);
+
+  // Integral
+  bool prepareIntegral(bool may_allocate);
+  void expectNext();
+  void follow();
+
+  DeblurParameters parameters_;
+  FrameSink& sink_;
+  DeblurCounters counters_;
+  ExposurePairing pairing_;
+  EventStream events_;
+  WindowPredictor predictor_;
+  std::int64_t now_ns_ = INT64_MIN;
+
+  std::deque<WaitingFrame> waiting_;
+  std::uint64_t next_number_ = 0;
+  std::vector<ExposureMatch> matches_;  ///< empty between calls; keeps its memory
+
+  SensorSize frame_size_;
+  std::uint64_t epoch_ = 0;
+  bool after_time_jump_ = false;
+  std::optional<std::int64_t> latest_stamp_ns_;  ///< of the input frames of this epoch
+  std::uint64_t output_epoch_ = 0;
+  std::optional<std::int64_t> last_output_ns_;
+
+  std::unique_ptr<DoubleIntegral> integral_;
+  SensorSize integral_size_;
+  std::uint64_t integral_generation_ = 0;
+  std::vector<float> gain_;
+  std::optional<Expectation> expectation_;
+};
+
+void Deblurrer::Impl::addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
+                                std::int64_t now_ns) {
+  advance(now_ns);
+  events_.take(events, size, sequence);
+  closeReady();
+  follow();
+}
+
+void Deblurrer::Impl::addFrame(InputFrame frame, std::int64_t now_ns) {
+  advance(now_ns);
+  ++counters_.frames_in;
+  if (latest_stamp_ns_ && frame.stamp_ns < *latest_stamp_ns_ - parameters_.max_backward_jump_ns) {
+    ++counters_.frame_time_jumps;
+    beginFrameEpoch(true);
+  }
+  latest_stamp_ns_ = std::max(latest_stamp_ns_.value_or(frame.stamp_ns), frame.stamp_ns);
+  if (frame.supported) {
+    frame_size_ = frame.image.size;
+  }
+
+  const bool by_topic = parameters_.exposure_source == ExposureSource::kTopic;
+  const std::uint64_t number = next_number_++;
+  const ExposureWindow window(frame.stamp_ns, by_topic);
+  waiting_.push_back({std::move(frame), number, epoch_, after_time_jump_, now_ns_, window});
+  if (by_topic) {
+    pairing_.addImage(number, now_ns_, matches_);
+    takeMatches();
+  }
+  if (waiting_.size() > kMaxWaitingFrames) {
+    settle(waiting_.front());
+    closeFront({FrameState::kPassThrough, PassReason::kEventsMissing});
+  }
+  closeReady();
+  expectNext();
+}
+
+void Deblurrer::Impl::addExposure(std::int32_t exposure_us, std::int64_t now_ns) {
+  advance(now_ns);
+  if (parameters_.exposure_source == ExposureSource::kParameter) {
+    pairing_.note(exposure_us);
+    return;
+  }
+  pairing_.addMessage(exposure_us, now_ns_, matches_);
+  takeMatches();
+  closeReady();
+  expectNext();
+}
+
+void Deblurrer::Impl::advance(std::int64_t now_ns) {
+  now_ns_ = std::max(now_ns_, now_ns);
+  if (parameters_.exposure_source == ExposureSource::kTopic) {
+    pairing_.advance(now_ns_, matches_);
+    takeMatches();
+  }
+  closeReady();
+}
+
+void Deblurrer::Impl::finish() {
+  events_.dropHeld();
+  pairing_.finish(matches_);
+  takeMatches();
+  closeReady();
+  while (!waiting_.empty()) {
+    closeFrontWithWhatHasCome();
+  }
+}
+
+void Deblurrer::Impl::pause() {
+  counters_.frames_suppressed += waiting_.size();
+  waiting_.clear();
+  events_.restart();
+  pairing_.restart();
+  expectation_.reset();
+  beginFrameEpoch(false);
+}
+
+void Deblurrer::Impl::setParameters(const DeblurParameters& parameters) {
+  validate(parameters);
+  const bool source_changes = parameters.exposure_source != parameters_.exposure_source;
+  parameters_ = parameters;
+  events_.setLimits(limitsOf(parameters_));
+  pairing_.setTimeout(parameters_.close_timeout_ns);
+  if (source_changes) {
+    pairing_.restart();
+    for (WaitingFrame& frame : waiting_) {
+      settle(frame);
+    }
+  }
+  if (integral_ && integral_->weighting() != parameters_.weighting) {
+    integral_.reset();
+    expectation_.reset();
+  }
+  if (integral_ && integral_->thresholds() != parameters_.thresholds) {
+    integral_->setThresholds(parameters_.thresholds);
+  }
+  expectNext();
+}
+
+DeblurStatus Deblurrer::Impl::status() const {
+  DeblurStatus status;
+  status.waiting_frames = waiting_.size();
+  status.events_seen = events_.seen();
+  status.sensor_size = frame_size_;
+  status.buffer_bytes = events_.memoryBytes() + gain_.capacity() * sizeof(float) +
+                        (integral_ ? integral_->memoryBytes() : 0);
+  if (events_.lists() != nullptr) {
+    status.buffered_events = events_.lists()->eventCount();
+    status.sensor_size = events_.lists()->size();
+  }
+  const bool by_topic = parameters_.exposure_source == ExposureSource::kTopic;
+  status.last_exposure_ns = by_topic && pairing_.last() ? *pairing_.last()  //
+                                                        : parameters_.exposure_time_ns;
+  status.exposure_known = status.last_exposure_ns > 0;
+  return status;
+}
+
+// --- Frames in -----------------------------------------------------------------------------------
+
+void Deblurrer::Impl::beginFrameEpoch(bool after_time_jump) {
+  ++epoch_;
+  after_time_jump_ = after_time_jump;
+  latest_stamp_ns_.reset();
+  predictor_.reset();
+}
+
+/// Hands lengths over to the frames that waited for them. Frames that left early are not there any
+/// more; their messages still had to be counted off.
+void Deblurrer::Impl::takeMatches() {
+  for (const ExposureMatch& match : matches_) {
+    if (waiting_.empty() || match.image < waiting_.front().number) {
+      continue;
+    }
+    WaitingFrame& frame = waiting_[static_cast<std::size_t>(match.image - waiting_.front().number)];
+    if (match.own_ns) {
+      frame.window.settle(match.own_ns);
+    } else {
+      settle(frame);
+    }
+  }
+  matches_.clear();
+}
+
+/// Without its own message a frame takes the last value received, else the parameter.
+void Deblurrer::Impl::settle(WaitingFrame& frame) {
+  if (frame.window.awaitsMessage()) {
+    const bool by_topic = parameters_.exposure_source == ExposureSource::kTopic;
+    frame.window.settle(by_topic ? pairing_.last() : std::nullopt);
+  }
+}
+
+// --- Frames out ----------------------------------------------------------------------------------
+
+bool Deblurrer::Impl::isOutOfTime(const WaitingFrame& frame) const {
+  return now_ns_ - frame.arrival_ns >= parameters_.close_timeout_ns;
+}
+
+FrameVerdict Deblurrer::Impl::judge(const WaitingFrame& frame, bool out_of_time) const {
+  const FrameTraits traits{frame.input.supported, frame.input.image.size, frame.after_time_jump};
+  return frame.window.judge(traits, events_, parameters_, out_of_time);
+}
+
+void Deblurrer::Impl::closeReady() {
+  while (!waiting_.empty()) {
+    FrameVerdict verdict = judge(waiting_.front(), false);
+    if (!verdict.isFinal()) {
+      if (!isOutOfTime(waiting_.front())) {
+        return;
+      }
+      ++counters_.frames_timed_out;
+      closeFrontWithWhatHasCome();
+      continue;
+    }
+    closeFront(verdict);
+  }
+}
+
+void Deblurrer::Impl::closeFrontWithWhatHasCome() {
+  settle(waiting_.front());
+  closeFront(judge(waiting_.front(), true));
+}
+
+/// The event clock jumps: frames of the old epoch get nothing more. The sensor's size changes:
+/// frames up to there have all they need, which the stream itself knows.
+void Deblurrer::Impl::beforeBreak(StreamBreak kind, std::int64_t next_event_ns) {
+  closeReady();
+  if (kind != StreamBreak::kTimeJump) {
+    return;
+  }
+  const std::int64_t newest_ns = events_.lists()->newest();
+  while (!waiting_.empty()) {
+    // A frame may be there before the first event of its epoch: it belongs where it is nearer.
+    const std::int64_t end_ns = waiting_.front().window.inEventTime(parameters_).end_ns;
+    if (std::abs(end_ns - next_event_ns) < std::abs(end_ns - newest_ns)) {
+      return;
+    }
+    closeFrontWithWhatHasCome();
+  }
+}
+
+bool Deblurrer::Impl::isLaterThanLastOutput(const WaitingFrame& frame, std::int64_t stamp_ns) {
+  if (frame.epoch == output_epoch_ && last_output_ns_ && stamp_ns <= *last_output_ns_) {
+    return false;
+  }
+  output_epoch_ = frame.epoch;
+  last_output_ns_ = stamp_ns;
+  return true;
+}
+
+/// \pre verdict.isFinal()
+void Deblurrer::Impl::closeFront(const FrameVerdict& verdict) {
+  WaitingFrame frame = std::move(waiting_.front());
+  waiting_.pop_front();
+
+  const bool unchanged = parameters_.passthrough;
+  const bool exposure_known = !unchanged && frame.window.length(parameters_) > 0;
+  OutputFrame output;
+  output.input = std::move(frame.input);
+  output.stamp_ns = frame.window.stamp();
+  output.exposure = {frame.window.stamp(), frame.window.stamp()};
+  if (exposure_known) {
+    output.exposure = frame.window.inFrameTime(parameters_);
+    output.stamp_ns = output.exposure.at(parameters_.reference);
+  }
+  if (!isLaterThanLastOutput(frame, output.stamp_ns)) {
+    ++counters_.frames_suppressed;
+    return;
+  }
+
+  const ExposureInterval window = frame.window.inEventTime(parameters_);
+  if (verdict.state == FrameState::kReady) {
+    deblur(output, window);
+  } else {
+    passThrough(output, verdict.reason);
+  }
+
+  if (exposure_known) {
+    if (frame.epoch == epoch_) {
+      predictor_.observe(output.exposure);
+    }
+    // A stamp far ahead of all events is no reason to throw them away.
+    if (events_.isPast(window.start_ns)) {
+      events_.discardBefore(window.start_ns);
+    }
+  }
+  expectNext();
+}
+
+void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window) {
+  prepareIntegral(true);
+  const ExposureInterval& exposure = output.exposure;
+  const std::int64_t reference_ns =
+      window.start_ns + (exposure.at(parameters_.reference) - exposure.start_ns);
+  const CloseReport report = integral_->close(*events_.lists(), window, reference_ns, gain_.data());
+  expectation_.reset();
+  const MutableImageView out = sink_.begin(output.input);
+  parameters_.response.applyGain(output.input.image, gain_.data(), out);
+
+  ++counters_.frames_deblurred;
+  counters_.frames_still += report.events == 0 ? 1 : 0;
+  counters_.closes_followed += report.kind == CloseKind::kFollowed ? 1 : 0;
+  counters_.closes_surprise += report.kind == CloseKind::kSurprise ? 1 : 0;
+  counters_.pixels_out_of_range += report.out_of_range;
+  output.deblurred = true;
+  output.events = report.events;
+  sink_.finish(output);
+}
+
+void Deblurrer::Impl::passThrough(OutputFrame& output, PassReason reason) {
+  copyImage(output.input.image, sink_.begin(output.input));
+  ++counters_.frames_passed[static_cast<std::size_t>(reason)];
+  output.pass_reason = reason;
+  sink_.finish(output);
+}
+
+// --- Integral ------------------------------------------------------------------------------------
+
+/// Makes the integral fit the lists. Per-pixel memory is taken only once a frame of the sensor's
+/// size has come, so that a nonsensical size in an event array costs nothing.
+/// \return false while it cannot be used
+bool Deblurrer::Impl::prepareIntegral(bool may_allocate) {
+  if (!integral_ || integral_size_ != events_.lists()->size()) {
+    if (!may_allocate) {
+      return false;
+    }
+    integral_.reset();  // before the new one, so that both are never held at once
+    integral_size_ = events_.lists()->size();
+    integral_ = std::make_unique<DoubleIntegral>(integral_size_, parameters_.thresholds,
+                                                 parameters_.weighting);
+    gain_.resize(integral_size_.pixelCount());
+    expectation_.reset();
+  }
+  if (integral_generation_ != events_.generation()) {
+    integral_->forget();
+    integral_generation_ = events_.generation();
+    expectation_.reset();
+  }
+  return true;
+}
+
+/// Names the next window: that of the frame in front as far as it is known, else the predicted one.
+void Deblurrer::Impl::expectNext() {
+  if (parameters_.passthrough || events_.lists() == nullptr ||
+      !prepareIntegral(frame_size_ == events_.lists()->size())) {
+    return;
+  }
+  std::optional<ExposureInterval> next = predictor_.predict();
+  if (!waiting_.empty()) {
+    const ExposureWindow& front = waiting_.front().window;
+    const std::int64_t known_ns = front.length(parameters_);
+    const std::int64_t length_ns = known_ns > 0 ? known_ns : predictor_.lastLength();
+    next = exposureInterval(front.stamp(), length_ns, parameters_.stamp_reference);
+  }
+  if (!next || next->length() == 0) {
+    return;
+  }
+  const Expectation expectation{
+      {next->start_ns + parameters_.time_offset_ns, next->end_ns + parameters_.time_offset_ns},
+      next->at(parameters_.reference) + parameters_.time_offset_ns};
+  if (!expectation_ || !expectation_->isNear(expectation)) {
+    integral_->expect(expectation.window, expectation.reference_ns);
+    expectation_ = expectation;
+  }
+}
+
+void Deblurrer::Impl::follow() {
+  if (!parameters_.passthrough && events_.lists() != nullptr && prepareIntegral(false)) {
+    integral_->follow(*events_.lists());
+  }
+}
+
+// --- Deblurrer -----------------------------------------------------------------------------------
+
+namespace {
+
+const DeblurParameters& validated(const DeblurParameters& parameters) {
+  validate(parameters);
+  return parameters;
+}
+
+}  // namespace
+
+Deblurrer::Deblurrer(const DeblurParameters& parameters, FrameSink& sink)
+    : impl_(std::make_unique<Impl>(validated(parameters), sink)) {}
+
+Deblurrer::~Deblurrer() = default;
+
+void Deblurrer::addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
+                          std::int64_t now_ns) {
+  impl_->addEvents(events, size, sequence, now_ns);
+}
+
+void Deblurrer::addFrame(InputFrame frame, std::int64_t now_ns) {
+  impl_->addFrame(std::move(frame), now_ns);
+}
+
+void Deblurrer::addExposure(std::int32_t exposure_us, std::int64_t now_ns) {
+  impl_->addExposure(exposure_us, now_ns);
+}
+
+void Deblurrer::advance(std::int64_t now_ns) {
+  impl_->advance(now_ns);
+}
+
+void Deblurrer::finish() {
+  impl_->finish();
+}
+
+void Deblurrer::pause() {
+  impl_->pause();
+}
+
+void Deblurrer::setParameters(const DeblurParameters& parameters) {
+  impl_->setParameters(parameters);
+}
+
+const DeblurParameters& Deblurrer::parameters() const {
+  return impl_->parameters();
+}
+
+const DeblurCounters& Deblurrer::counters() const {
+  return impl_->counters();
+}
+
+DeblurStatus Deblurrer::status() const {
+  return impl_->status();
+}
+
+}  // namespace fast_edi
