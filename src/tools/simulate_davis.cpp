@@ -1,0 +1,422 @@
+/// \file
+/// Writes a bag as a DAVIS under davis_ros_driver would have recorded it, from the simulator, with
+/// the true sharp frames beside the blurry ones.
+#include <unistd.h>
+
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/Image.h>
+#include <sensor_msgs/distortion_models.h>
+#include <sensor_msgs/image_encodings.h>
+#include <std_msgs/Int32.h>
+#include <boost/program_options.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "fast_edi/ros/bag_writer.hpp"
+#include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/simulation/davis_simulator.hpp"
+
+namespace {
+
+using fast_edi::ColorFilter;
+using fast_edi::DavisSimulator;
+using fast_edi::Event;
+using fast_edi::EventArray;
+using fast_edi::ExposureInstant;
+using fast_edi::kNanosecondsPerMicrosecond;
+using fast_edi::kNanosecondsPerMillisecond;
+using fast_edi::SensorSettings;
+using fast_edi::SimulatedFrame;
+using fast_edi::SimulatedInterval;
+using fast_edi::SimulationSettings;
+namespace encodings = sensor_msgs::image_encodings;
+namespace po = boost::program_options;
+
+/// When messages reach the recorder: a frame leaves the camera when its readout has ended, an event
+/// array when USB has delivered its last packet.
+constexpr std::int64_t kFrameReadoutNs = 5 * kNanosecondsPerMillisecond;
+constexpr std::int64_t kExposureMessageDelayNs = 100 * kNanosecondsPerMicrosecond;
+constexpr std::int64_t kArrayDelayNs = kNanosecondsPerMillisecond;
+
+/// How the recording is laid down in messages.
+struct RecordingOptions {
+  std::string path;
+  std::string name_space = "/dvs";
+  std::string encoding = encodings::MONO8;
+  std::string compression = "none";
+  ExposureInstant stamp = ExposureInstant::kMid;
+  std::int64_t array_length_us = 10'000;
+  bool overwrite = false;
+  bool exposure_topic = true;
+  bool camera_info_topic = true;
+  bool ground_truth_topic = true;
+};
+
+ros::Time rosTime(std::int64_t t_ns) {
+  ros::Time time;
+  time.fromNSec(static_cast<std::uint64_t>(t_ns));
+  return time;
+}
+
+/// Lays a simulation down in messages, in the order of their record times.
+class Recording {
+ public:
+  Recording(const RecordingOptions& options, const DavisSimulator& simulator)
+      : options_(options),
+        writer_(options.path, "", options.compression, options.overwrite),
+        array_end_ns_(simulator.settings().timing.start_ns) {
+    const SimulationSettings& settings = simulator.settings();
+    array_.width = static_cast<std::uint32_t>(settings.sensor.size.width);
+    array_.height = static_cast<std::uint32_t>(settings.sensor.size.height);
+    camera_info_ = makeCameraInfo(settings);
+    array_end_ns_ += options_.array_length_us * kNanosecondsPerMicrosecond;
+  }
+
+  void add(const SimulatedInterval& interval) {
+    addFrame(interval.frame);
+    for (const Event& event : interval.events) {
+      if (event.t_ns >= array_end_ns_) closeArraysUntil(event.t_ns);
+      if (events_in_array_ == 0) array_.header.stamp = rosTime(event.t_ns);
+      array_.append(event);
+      ++events_in_array_;
+    }
+    // Later messages come later: events of the next interval lie in the open array or after it, and
+    // its frame is recorded after its exposure.
+    writeUntil(std::min(array_end_ns_, interval.end_ns));
+  }
+
+  void close(std::int64_t end_ns) {
+    closeArraysUntil(end_ns);
+    closeArray();
+    writeUntil(std::numeric_limits<std::int64_t>::max());
+    writer_.close();
+  }
+
+ private:
+  static sensor_msgs::CameraInfo makeCameraInfo(const SimulationSettings& settings) {
+    // Like the driver's: no stamp, no frame_id.
+    sensor_msgs::CameraInfo info;
+    info.width = static_cast<std::uint32_t>(settings.sensor.size.width);
+    info.height = static_cast<std::uint32_t>(settings.sensor.size.height);
+    info.distortion_model = sensor_msgs::distortion_models::PLUMB_BOB;
+    info.D.assign(5, 0.0);
+    const double f = settings.focalLengthPx();
+    const double cx = 0.5 * (settings.sensor.size.width - 1);
+    const double cy = 0.5 * (settings.sensor.size.height - 1);
+    info.K = {f, 0.0, cx, 0.0, f, cy, 0.0, 0.0, 1.0};
+    info.R = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+    info.P = {f, 0.0, cx, 0.0, 0.0, f, cy, 0.0, 0.0, 0.0, 1.0, 0.0};
+    return info;
+  }
+
+  sensor_msgs::Image makeImage(const cv::Mat& raw, std::int64_t stamp_ns) const {
+    cv::Mat pixels = raw;
+    // OpenCV names a pattern by the second row's second and third pixel: its BG is RGGB.
+    if (options_.encoding == encodings::RGB8) {
+      cv::cvtColor(raw, pixels, cv::COLOR_BayerBG2RGB);
+    } else if (options_.encoding == encodings::BGR8) {
+      cv::cvtColor(raw, pixels, cv::COLOR_BayerBG2BGR);
+    }
+    sensor_msgs::Image image;
+    image.header.seq = frames_;
+    image.header.stamp = rosTime(stamp_ns);
+    image.width = static_cast<std::uint32_t>(pixels.cols);
+    image.height = static_cast<std::uint32_t>(pixels.rows);
+    image.encoding = options_.encoding;
+    image.is_bigendian = 0;
+    image.step = static_cast<std::uint32_t>(pixels.cols * pixels.elemSize());
+    // Freshly made matrices are without padding.
+    image.data.assign(pixels.datastart, pixels.dataend);
+    return image;
+  }
+
+  void addFrame(const SimulatedFrame& frame) {
+    const std::int64_t time_ns = frame.exposure.end_ns + kFrameReadoutNs;
+    enqueue("/image_raw", time_ns, makeImage(frame.blurry, frame.exposure.at(options_.stamp)));
+    if (options_.ground_truth_topic) {
+      enqueue("/ground_truth/image_raw", time_ns,
+              makeImage(frame.sharp, frame.exposure.at(ExposureInstant::kMid)));
+    }
+    if (options_.exposure_topic) {
+      std_msgs::Int32 exposure;
+      exposure.data =
+          static_cast<std::int32_t>(frame.exposure.length() / kNanosecondsPerMicrosecond);
+      enqueue("/exposure", time_ns + kExposureMessageDelayNs, exposure);
+    }
+    ++frames_;
+  }
+
+  /// A scene without events gives no arrays.
+  void closeArray() {
+    if (events_in_array_ == 0) return;
+    array_.header.seq = arrays_++;
+    enqueue("/events", array_end_ns_ + kArrayDelayNs, array_);
+    if (options_.camera_info_topic) {
+      enqueue("/camera_info", array_end_ns_ + kArrayDelayNs, camera_info_);
+    }
+    array_.clear();
+    events_in_array_ = 0;
+  }
+
+  void closeArraysUntil(std::int64_t t_ns) {
+    const std::int64_t length_ns = options_.array_length_us * kNanosecondsPerMicrosecond;
+    while (array_end_ns_ <= t_ns) {
+      closeArray();
+      array_end_ns_ += length_ns;
+    }
+  }
+
+  template <typename Message>
+  void enqueue(const std::string& topic, std::int64_t time_ns, const Message& message) {
+    waiting_.emplace(time_ns, [this, topic, time_ns, message] {
+      writer_.write(options_.name_space + topic, rosTime(time_ns), message);
+    });
+  }
+
+  void writeUntil(std::int64_t time_ns) {
+    const auto end = waiting_.upper_bound(time_ns);
+    for (auto it = waiting_.begin(); it != end; ++it) it->second();
+    waiting_.erase(waiting_.begin(), end);
+  }
+
+  RecordingOptions options_;
+  fast_edi::BagWriter writer_;
+  sensor_msgs::CameraInfo camera_info_;
+  EventArray array_;
+  std::int64_t array_end_ns_;
+  std::uint64_t events_in_array_ = 0;
+  std::uint32_t arrays_ = 0;
+  std::uint32_t frames_ = 0;
+  std::multimap<std::int64_t, std::function<void()>> waiting_;  ///< by record time
+};
+
+/// What the driver's sensor never does, usual behaviour, and a hot, dim or badly biased sensor.
+void applyNoisePreset(const std::string& name, SensorSettings& sensor) {
+  const auto size = sensor.size;
+  if (name == "none") {
+    sensor = SensorSettings::ideal();
+  } else if (name == "strong") {
+    sensor.threshold_mismatch = 0.10;
+    sensor.refractory_ns = 96'000;  // RefrBp (3, 7)
+    sensor.leak_rate_hz = 0.3;
+    sensor.shot_noise_bright_hz = 1.0;
+    sensor.shot_noise_dark_hz = 10.0;
+    sensor.photoreceptor_bright_hz = 300.0;
+    sensor.photoreceptor_dark_hz = 30.0;
+    sensor.hot_pixel_fraction = 1e-4;
+    sensor.read_noise_dn = 2.0;
+  } else if (name != "typical") {
+    throw std::invalid_argument("--noise: expected none, typical or strong, got \"" + name + "\"");
+  }
+  sensor.size = size;
+}
+
+void applySensorName(const std::string& name, SensorSettings& sensor) {
+  if (name == "davis346") {
+    sensor.size = fast_edi::kDavis346Size;
+  } else if (name == "davis240c") {
+    sensor.size = fast_edi::kDavis240cSize;
+  } else {
+    throw std::invalid_argument("--sensor: expected davis346 or davis240c, got \"" + name + "\"");
+  }
+}
+
+void applyEncoding(const std::string& encoding, SensorSettings& sensor) {
+  if (encoding == encodings::MONO16) {
+    sensor.frame_bits = 16;
+  } else if (encoding == encodings::BAYER_RGGB8 || encoding == encodings::RGB8 ||
+             encoding == encodings::BGR8) {
+    sensor.color_filter = ColorFilter::kBayerRggb;
+  } else if (encoding != encodings::MONO8) {
+    throw std::invalid_argument(
+        "--encoding: expected mono8, mono16, bayer_rggb8, rgb8 or bgr8, got \"" + encoding + "\"");
+  }
+}
+
+ExposureInstant stampFromName(const std::string& name) {
+  if (name == "start") return ExposureInstant::kStart;
+  if (name == "mid") return ExposureInstant::kMid;
+  if (name == "end") return ExposureInstant::kEnd;
+  throw std::invalid_argument("--stamp: expected start, mid or end, got \"" + name + "\"");
+}
+
+/// An option that overwrites \p target when given; the help shows the value it has now.
+template <typename Value>
+void addOption(po::options_description& group, const char* name, Value& target,
+               const std::string& description) {
+  std::ostringstream text;
+  text << description << " (default " << target << ")";
+  group.add_options()(name,
+                      po::value<Value>()->value_name("X")->notifier(
+                          [&target](const Value& value) { target = value; }),
+                      text.str().c_str());
+}
+
+/// One line on the terminal, redrawn.
+void showProgress(int done, int total, std::uint64_t events) {
+  constexpr int kWidth = 30;
+  const int filled = total > 0 ? kWidth * done / total : kWidth;
+  std::fprintf(stderr, "\r[%s%s] frame %d of %d, %.1f million events",
+               std::string(static_cast<std::size_t>(filled), '#').c_str(),
+               std::string(static_cast<std::size_t>(kWidth - filled), '.').c_str(), done, total,
+               static_cast<double>(events) * 1e-6);
+  if (done == total) std::fputc('\n', stderr);
+}
+
+void simulate(const SimulationSettings& settings, const RecordingOptions& options) {
+  DavisSimulator simulator(settings);
+  Recording recording(options, simulator);
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  std::uint64_t events = 0;
+  std::size_t tags = 0;
+  int frames = 0;
+  SimulatedInterval interval;
+  while (simulator.next(interval)) {
+    events += interval.events.size();
+    tags += interval.frame.visible_tags.size();
+    recording.add(interval);
+    ++frames;
+    if (terminal) showProgress(frames, settings.timing.frames, events);
+  }
+  recording.close(interval.end_ns);
+  const double seconds = static_cast<double>(interval.end_ns - settings.timing.start_ns) /
+                         static_cast<double>(fast_edi::kNanosecondsPerSecond);
+  std::printf("%s: %d frames, %llu events in %.2f s (%.2f million/s), %zu tags in view\n",
+              options.path.c_str(), frames, static_cast<unsigned long long>(events), seconds,
+              static_cast<double>(events) / seconds * 1e-6, tags);
+}
+
+int run(int argc, char** argv) {
+  SimulationSettings settings;
+  RecordingOptions options;
+  std::string sensor = "davis346";
+  std::string noise = "typical";
+  std::string texture = "poster";
+  std::string motion = "shake";
+  std::string stamp = "mid";
+
+  po::options_description output("Recording");
+  output.add_options()("help,h", "print this text");
+  output.add_options()("out,o", po::value<std::string>()->value_name("PATH"), "bag to write");
+  output.add_options()("overwrite", "replace the bag if it exists");
+  addOption(output, "compression", options.compression, "none, bz2 or lz4");
+  addOption(output, "namespace", options.name_space, "namespace of all topics");
+  addOption(output, "encoding", options.encoding, "mono8, mono16, bayer_rggb8, rgb8 or bgr8");
+  addOption(output, "stamp", stamp,
+            "instant of the exposure that an image's stamp means: mid (davis_ros_driver), start "
+            "(dv-ros) or end");
+  addOption(output, "array-us", options.array_length_us, "length of an event array [us]");
+  output.add_options()("no-exposure", "leave out the exposure topic");
+  output.add_options()("no-camera-info", "leave out the camera_info topic");
+  output.add_options()("no-ground-truth", "leave out the true sharp frames");
+
+  po::options_description scene("Scene");
+  addOption(scene, "seed", settings.seed, "equal seeds give equal bags");
+  addOption(scene, "texture", texture,
+            "poster, natural, flat, or a picture: anything with a '.' or '/' in it is a path");
+  addOption(scene, "density", settings.scene.density, "how full the poster is, 0..1");
+  addOption(scene, "tags", settings.scene.tags, "number of AprilTags (36h11)");
+  addOption(scene, "tag-side-px", settings.scene.tag_side_px, "side of a tag's black square [px]");
+  addOption(scene, "optics-sigma-px", settings.scene.optics_sigma_px, "blur of the lens [px]");
+  addOption(scene, "illumination", settings.scene.illumination,
+            "light on the scene, relative; scales DN and all that depends on brightness");
+  addOption(scene, "flicker-hz", settings.scene.flicker_hz, "modulation of the light [Hz]");
+  addOption(scene, "flicker-depth", settings.scene.flicker_depth, "its amplitude, relative, 0..1");
+  addOption(scene, "motion", motion, "still, mild, pan, spin or shake");
+  addOption(scene, "motion-scale", settings.motion.scale, "factor on all amplitudes and speeds");
+  addOption(scene, "focal-length-px", settings.motion.focal_length_px,
+            "focal length [px], 0 = 0.95 x width");
+
+  po::options_description timing("Timing");
+  addOption(timing, "frames", settings.timing.frames, "number of frames");
+  addOption(timing, "period-us", settings.timing.period_us, "from frame to frame [us]");
+  addOption(timing, "exposure-us", settings.timing.exposure_us, "exposure time [us]");
+  addOption(timing, "lead-us", settings.timing.lead_us,
+            "events before the first exposure and after the last period [us]");
+  addOption(timing, "start-ns", settings.timing.start_ns, "sensor time at the start [ns]");
+
+  po::options_description pixels("Sensor");
+  addOption(pixels, "sensor", sensor, "davis346 (346 x 260) or davis240c (240 x 180)");
+  addOption(pixels, "width", settings.sensor.size.width, "other width [px]");
+  addOption(pixels, "height", settings.sensor.size.height, "other height [px]");
+  addOption(pixels, "noise", noise,
+            "none, typical or strong: presets that the options below change; their defaults are "
+            "those of typical");
+  addOption(pixels, "threshold-on", settings.sensor.thresholds.on, "mean [natural log]");
+  addOption(pixels, "threshold-off", settings.sensor.thresholds.off, "mean [natural log], > 0");
+  addOption(pixels, "mismatch", settings.sensor.threshold_mismatch,
+            "standard deviation of thresholds, relative to their mean");
+  addOption(pixels, "refractory-ns", settings.sensor.refractory_ns, "refractory period [ns]");
+  addOption(pixels, "leak-hz", settings.sensor.leak_rate_hz, "leak events [1/s per pixel]");
+  addOption(pixels, "shot-noise-bright-hz", settings.sensor.shot_noise_bright_hz,
+            "noise events of a white surface [1/s per pixel]");
+  addOption(pixels, "shot-noise-dark-hz", settings.sensor.shot_noise_dark_hz,
+            "noise events of a black surface [1/s per pixel]");
+  addOption(pixels, "photoreceptor-bright-hz", settings.sensor.photoreceptor_bright_hz,
+            "cut-off at a white surface [Hz], 0 = unlimited");
+  addOption(pixels, "photoreceptor-dark-hz", settings.sensor.photoreceptor_dark_hz,
+            "cut-off at a black surface [Hz], 0 = unlimited");
+  addOption(pixels, "hot-pixels", settings.sensor.hot_pixel_fraction,
+            "pixels that fire all the time, fraction");
+  addOption(pixels, "hot-pixel-hz", settings.sensor.hot_pixel_rate_hz, "at this rate [1/s]");
+  addOption(pixels, "white-dn", settings.sensor.white_dn, "frames: white surface [DN]");
+  addOption(pixels, "read-noise-dn", settings.sensor.read_noise_dn, "frames: read noise [DN rms]");
+  addOption(pixels, "electrons-per-dn", settings.sensor.electrons_per_dn,
+            "frames: shot noise, 0 = none");
+
+  po::options_description all(
+      "simulate_davis --out PATH [options]\n"
+      "Simulates a DAVIS moving over a textured plane and writes events, blurry frames, exposure\n"
+      "times and true sharp frames (at mid-exposure) as davis_ros_driver would have recorded them");
+  all.add(output).add(scene).add(timing).add(pixels);
+
+  po::variables_map values;
+  po::store(po::command_line_parser(argc, argv).options(all).run(), values);
+  if (values.count("help") != 0) {
+    std::cout << all;
+    return 0;
+  }
+  // Presets first, so that single options can change them.
+  if (values.count("noise") != 0) noise = values["noise"].as<std::string>();
+  if (values.count("sensor") != 0) sensor = values["sensor"].as<std::string>();
+  applyNoisePreset(noise, settings.sensor);
+  applySensorName(sensor, settings.sensor);
+  po::notify(values);
+  applyEncoding(options.encoding, settings.sensor);
+  options.stamp = stampFromName(stamp);
+  options.overwrite = values.count("overwrite") != 0;
+  options.exposure_topic = values.count("no-exposure") == 0;
+  options.camera_info_topic = values.count("no-camera-info") == 0;
+  options.ground_truth_topic = values.count("no-ground-truth") == 0;
+  if (texture.find_first_of("./") != std::string::npos) {
+    settings.scene.texture_file = texture;
+  } else {
+    settings.scene.texture = fast_edi::textureKindFromName(texture);
+  }
+  settings.motion.kind = fast_edi::motionKindFromName(motion);
+  if (options.array_length_us <= 0) {
+    throw std::invalid_argument("--array-us: expected more than 0, got " +
+                                std::to_string(options.array_length_us));
+  }
+  if (values.count("out") == 0) throw std::invalid_argument("--out: expected the bag to write");
+  options.path = values["out"].as<std::string>();
+  simulate(settings, options);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "simulate_davis: " << error.what() << '\n';
+    return 1;
+  }
+}
