@@ -152,12 +152,12 @@ void EventSensor::drawNoise(const cv::Mat1f& irradiance, double length_ns) {
 
 void EventSensor::fire(std::size_t pixel, const Step& step, double at_ns, bool on,
                        std::vector<Event>& events) {
-  // The step's end rounds up never: at_ns <= length_ns, whole nanoseconds, then the 1 us clock.
+  // The step's end rounds up never: at_ns <= length_ns, whole nanoseconds, then the clock.
   const std::int64_t exact_ns = step.start_ns + static_cast<std::int64_t>(at_ns);
   Event event;
   event.x = static_cast<std::uint16_t>(pixel % static_cast<std::size_t>(settings_.size.width));
   event.y = static_cast<std::uint16_t>(pixel / static_cast<std::size_t>(settings_.size.width));
-  event.t_ns = exact_ns - exact_ns % kNanosecondsPerMicrosecond;
+  event.t_ns = exact_ns - exact_ns % (settings_.clock_us * kNanosecondsPerMicrosecond);
   event.on = on;
   events.push_back(event);
   if (settings_.refractory_ns > 0) free_ns_[pixel] = exact_ns + settings_.refractory_ns;

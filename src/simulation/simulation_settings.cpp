@@ -81,6 +81,7 @@ void SimulationSettings::validate() const {
     throw std::invalid_argument(
         "photoreceptor cut-off: expected bright and dark both 0 or both above 0 Hz");
   }
+  checkRange("event clock [us]", static_cast<double>(sensor.clock_us), 1.0, 1000.0);
   checkRange("hot pixel fraction", sensor.hot_pixel_fraction, 0.0, 1.0);
   checkRange("hot pixel rate [Hz]", sensor.hot_pixel_rate_hz, 0.0, 1e5);
   checkRange("white level [DN]", sensor.white_dn, 1.0, 10000.0);

@@ -353,6 +353,8 @@ int run(int argc, char** argv) {
   addOption(pixels, "mismatch", settings.sensor.threshold_mismatch,
             "standard deviation of thresholds, relative to their mean");
   addOption(pixels, "refractory-ns", settings.sensor.refractory_ns, "refractory period [ns]");
+  addOption(pixels, "clock-us", settings.sensor.clock_us,
+            "event times are multiples of this [us]; coarser ones compress better");
   addOption(pixels, "leak-hz", settings.sensor.leak_rate_hz, "leak events [1/s per pixel]");
   addOption(pixels, "shot-noise-bright-hz", settings.sensor.shot_noise_bright_hz,
             "noise events of a white surface [1/s per pixel]");

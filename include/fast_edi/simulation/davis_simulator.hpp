@@ -34,7 +34,7 @@ struct SimulatedFrame {
 struct SimulatedInterval {
   std::int64_t start_ns = 0;
   std::int64_t end_ns = 0;
-  std::vector<Event> events;  ///< with start < t <= end before rounding down to 1 us, sorted
+  std::vector<Event> events;  ///< with start < t <= end before rounding down to the clock, sorted
   SimulatedFrame frame;
 };
 

@@ -15,7 +15,7 @@ namespace fast_edi {
 
 /// Turns irradiance given at successive instants into events. Between two instants log irradiance
 /// is taken as linear, so that crossing times are exact for that signal; they are then rounded down
-/// to the sensor's clock of 1 us.
+/// to the sensor's clock (1 us unless set otherwise).
 ///
 /// Invariant (no noise, leak, refractory period or low-pass): at each instant given, log irradiance
 /// minus the pixel's initial level minus the sum of its events' thresholds lies within

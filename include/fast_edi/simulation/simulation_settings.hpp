@@ -75,6 +75,7 @@ struct SensorSettings {
   double photoreceptor_dark_hz = 0.0;    ///< ... at irradiance 0; both 0 = unlimited bandwidth
   double hot_pixel_fraction = 0.0;       ///< pixels that fire ON all the time, 0..1
   double hot_pixel_rate_hz = 1000.0;     ///< ... at this rate [1/s]
+  std::int64_t clock_us = 1;             ///< event times are rounded down to multiples of this
   bool random_initial_level = true;  ///< levels at the start anywhere between the two thresholds
 
   double white_dn = 215.0;         ///< DN of a white surface at illumination 1
