@@ -1,0 +1,29 @@
+/// \file
+/// What there is to configure, for people: README's table and the tools' help come from here.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace fast_edi {
+
+/// One key of a configuration.
+struct ParameterDescription {
+  std::string name;
+  std::string type;           ///< "number", "integer", "bool", "text", "map" or "choice"
+  std::string unit;           ///< empty when it has none
+  std::string range;          ///< what is accepted; empty when anything of the type is
+  std::string default_value;  ///< taken from the code's own defaults
+  std::string doc;
+};
+
+/// All keys at the top level, in README's order.
+std::vector<ParameterDescription> parameterDescriptions();
+
+/// All keys of the map `biases`.
+std::vector<ParameterDescription> biasDescriptions();
+
+/// A Markdown table, one line for each key.
+std::string markdownTable(const std::vector<ParameterDescription>& descriptions);
+
+}  // namespace fast_edi

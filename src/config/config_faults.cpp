@@ -1,0 +1,31 @@
+#include "config_faults.hpp"
+
+#include <sstream>
+
+namespace fast_edi {
+
+void ConfigFaults::add(const YAML::Node& where, const std::string& text) {
+  std::string place = file_;
+  const YAML::Mark mark = where.IsDefined() ? where.Mark() : YAML::Mark::null_mark();
+  if (!mark.is_null() && !file_.empty()) {
+    place += ":" + std::to_string(mark.line + 1);
+  }
+  if (!place.empty()) {
+    place += ": ";
+  }
+  std::istringstream lines(text);
+  std::string line;
+  while (std::getline(lines, line)) {
+    lines_.push_back(place + line);
+  }
+}
+
+std::string ConfigFaults::text() const {
+  std::string text;
+  for (const std::string& line : lines_) {
+    text += (text.empty() ? "" : "\n") + line;
+  }
+  return text;
+}
+
+}  // namespace fast_edi

@@ -1,0 +1,190 @@
+#include "config_key.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "nearest_key.hpp"
+
+namespace fast_edi {
+namespace {
+
+constexpr double kLargestPlainInteger = 1e15;
+
+std::optional<double> asNumber(const YAML::Node& node) {
+  double value = 0.0;
+  if (node.IsScalar() && YAML::convert<double>::decode(node, value) && !std::isnan(value)) {
+    return value;
+  }
+  return std::nullopt;
+}
+
+std::string expected(const YAML::Node& node, const std::string& what) {
+  return "found " + foundText(node) + ", expected " + what;
+}
+
+bool answersTo(const ConfigKey& key, const std::string& name) {
+  return key.description.name == name ||
+         std::find(key.other_spellings.begin(), key.other_spellings.end(), name) !=
+             key.other_spellings.end();
+}
+
+std::string unknownText(const std::string& name, const std::vector<ConfigKey>& keys,
+                        const std::string& prefix) {
+  std::vector<std::string> known;
+  for (const ConfigKey& key : keys) {
+    known.push_back(key.description.name);
+    known.insert(known.end(), key.other_spellings.begin(), key.other_spellings.end());
+  }
+  return prefix + name + ": unknown, the nearest known key is " + prefix + nearestKey(name, known);
+}
+
+void readEntry(const YAML::Node& value, const ConfigKey& key, const std::string& path,
+               ParameterDraft& draft, ConfigFaults& faults) {
+  std::string fault;
+  if (key.members.empty()) {
+    fault = key.read(value, draft);
+  } else if (value.IsMap()) {
+    readMap(value, key.members, path + "/", draft, faults);
+  } else {
+    fault = expected(value, "a map");
+  }
+  if (!fault.empty()) {
+    draft.faulty.insert(path);
+    faults.add(value, path + ": " + fault);
+  }
+}
+
+}  // namespace
+
+std::string numberText(double value) {
+  std::array<char, 32> text{};
+  const bool integer = std::abs(value) < kLargestPlainInteger && value == std::floor(value);
+  std::snprintf(text.data(), text.size(), integer ? "%.0f" : "%.6g", value);
+  return text.data();
+}
+
+std::string NumberRange::text() const {
+  return min_excluded ? "> " + numberText(min) + ", <= " + numberText(max)
+                      : numberText(min) + ".." + numberText(max);
+}
+
+std::string foundText(const YAML::Node& node) {
+  switch (node.Type()) {
+    case YAML::NodeType::Scalar:
+      return "'" + node.Scalar() + "'";
+    case YAML::NodeType::Sequence:
+      return "a list";
+    case YAML::NodeType::Map:
+      return "a map";
+    case YAML::NodeType::Null:
+    case YAML::NodeType::Undefined:
+      break;
+  }
+  return "nothing";
+}
+
+ConfigKey numberKey(const KeyText& text, NumberRange range,
+                    std::function<void(double, ParameterDraft&)> store) {
+  ConfigKey key;
+  key.description = {text.name, "number", text.unit, range.text(), text.default_value, text.doc};
+  const std::string what =
+      "a number " + range.text() + (text.unit.empty() ? "" : " [" + text.unit + "]");
+  key.read = [range, what, store = std::move(store)](const YAML::Node& node,
+                                                     ParameterDraft& draft) -> std::string {
+    const std::optional<double> value = asNumber(node);
+    if (!value || !range.contains(*value)) {
+      return expected(node, what);
+    }
+    store(*value, draft);
+    return {};
+  };
+  return key;
+}
+
+ConfigKey integerKey(const KeyText& text, NumberRange range,
+                     std::function<void(std::int64_t, ParameterDraft&)> store) {
+  ConfigKey key;
+  key.description = {text.name, "integer", text.unit, range.text(), text.default_value, text.doc};
+  const std::string what =
+      "an integer " + range.text() + (text.unit.empty() ? "" : " [" + text.unit + "]");
+  key.read = [range, what, store = std::move(store)](const YAML::Node& node,
+                                                     ParameterDraft& draft) -> std::string {
+    // By way of double, so that 1e6 is as good as 1000000.
+    const std::optional<double> value = asNumber(node);
+    if (!value || !range.contains(*value) || *value != std::floor(*value)) {
+      return expected(node, what);
+    }
+    store(static_cast<std::int64_t>(*value), draft);
+    return {};
+  };
+  return key;
+}
+
+ConfigKey boolKey(const KeyText& text, std::function<void(bool, ParameterDraft&)> store) {
+  ConfigKey key;
+  key.description = {text.name, "bool", text.unit, "true, false", text.default_value, text.doc};
+  key.read = [store = std::move(store)](const YAML::Node& node,
+                                        ParameterDraft& draft) -> std::string {
+    bool value = false;
+    if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value)) {
+      return expected(node, "true or false");
+    }
+    store(value, draft);
+    return {};
+  };
+  return key;
+}
+
+ConfigKey textKey(const KeyText& text,
+                  std::function<void(const std::string&, ParameterDraft&)> store) {
+  ConfigKey key;
+  key.description = {text.name, "text", text.unit, "", text.default_value, text.doc};
+  key.read = [store = std::move(store)](const YAML::Node& node,
+                                        ParameterDraft& draft) -> std::string {
+    if (!node.IsScalar()) {
+      return expected(node, "a text");
+    }
+    store(node.Scalar(), draft);
+    return {};
+  };
+  return key;
+}
+
+ConfigKey mapKey(const KeyText& text, std::vector<ConfigKey> members) {
+  ConfigKey key;
+  key.description = {text.name, "map", text.unit, "", text.default_value, text.doc};
+  key.members = std::move(members);
+  return key;
+}
+
+void readMap(const YAML::Node& map, const std::vector<ConfigKey>& keys, const std::string& prefix,
+             ParameterDraft& draft, ConfigFaults& faults) {
+  for (const auto& entry : map) {
+    if (!entry.first.IsScalar()) {
+      faults.add(entry.first, "a key is " + foundText(entry.first) + ", expected a name");
+      continue;
+    }
+    const std::string& name = entry.first.Scalar();
+    const auto key = std::find_if(keys.begin(), keys.end(), [&name](const ConfigKey& candidate) {
+      return answersTo(candidate, name);
+    });
+    if (key == keys.end()) {
+      faults.add(entry.first, unknownText(name, keys, prefix));
+      continue;
+    }
+    const std::string path = prefix + key->description.name;
+    if (!draft.given.insert(path).second) {
+      draft.faulty.insert(path);
+      faults.add(entry.first,
+                 prefix + name + ": given twice" +
+                     (key->other_spellings.empty() ? "" : " (spellings count as one)"));
+      continue;
+    }
+    readEntry(entry.second, *key, path, draft, faults);
+  }
+}
+
+}  // namespace fast_edi

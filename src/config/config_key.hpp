@@ -1,0 +1,91 @@
+/// \file
+/// A key of a configuration: its description, and how its value is read.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+#include "config_faults.hpp"
+#include "fast_edi/config/parameter_table.hpp"
+#include "parameter_draft.hpp"
+
+namespace fast_edi {
+
+struct ConfigKey {
+  ParameterDescription description;
+  /// Reads a value into the draft; returns what was found and expected if it cannot, else nothing.
+  std::function<std::string(const YAML::Node&, ParameterDraft&)> read;
+  /// Keys of the map that is the value; empty for everything but maps, which need no read.
+  std::vector<ConfigKey> members;
+  /// Accepted besides the name.
+  std::vector<std::string> other_spellings;
+};
+
+struct NumberRange {
+  double min = 0.0;
+  double max = 0.0;
+  bool min_excluded = false;
+
+  bool contains(double value) const {
+    return (min_excluded ? value > min : value >= min) && value <= max;
+  }
+  std::string text() const;
+};
+
+/// What people need to know about a key besides its type and range.
+struct KeyText {
+  std::string name;
+  std::string unit;
+  std::string default_value;
+  std::string doc;
+};
+
+/// At most six digits, integers in full.
+std::string numberText(double value);
+
+/// "'0.3'", "a list", ...: what a message says was found.
+std::string foundText(const YAML::Node& node);
+
+ConfigKey numberKey(const KeyText& text, NumberRange range,
+                    std::function<void(double, ParameterDraft&)> store);
+ConfigKey integerKey(const KeyText& text, NumberRange range,
+                     std::function<void(std::int64_t, ParameterDraft&)> store);
+ConfigKey boolKey(const KeyText& text, std::function<void(bool, ParameterDraft&)> store);
+ConfigKey textKey(const KeyText& text,
+                  std::function<void(const std::string&, ParameterDraft&)> store);
+ConfigKey mapKey(const KeyText& text, std::vector<ConfigKey> members);
+
+/// A key whose value is one of some words.
+template <typename Choice>
+ConfigKey choiceKey(const KeyText& text, std::vector<std::pair<std::string, Choice>> choices,
+                    std::function<void(Choice, ParameterDraft&)> store) {
+  std::string words;
+  for (const auto& choice : choices) {
+    words += (words.empty() ? "" : ", ") + choice.first;
+  }
+  ConfigKey key;
+  key.description = {text.name, "choice", text.unit, words, text.default_value, text.doc};
+  key.read = [choices = std::move(choices), words, store = std::move(store)](
+                 const YAML::Node& node, ParameterDraft& draft) -> std::string {
+    for (const auto& choice : choices) {
+      if (node.IsScalar() && choice.first == node.Scalar()) {
+        store(choice.second, draft);
+        return {};
+      }
+    }
+    return "found " + foundText(node) + ", expected one of: " + words;
+  };
+  return key;
+}
+
+/// Reads every entry of a map by the key of its name. Unknown and repeated keys are faults.
+/// \param prefix of the keys in messages and in the draft, e.g. "biases/"
+void readMap(const YAML::Node& map, const std::vector<ConfigKey>& keys, const std::string& prefix,
+             ParameterDraft& draft, ConfigFaults& faults);
+
+}  // namespace fast_edi

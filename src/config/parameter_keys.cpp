@@ -1,0 +1,191 @@
+#include "parameter_keys.hpp"
+
+#include <cmath>
+
+namespace fast_edi {
+namespace {
+
+// Ranges that the meaning of a key does not give are wide: they catch values in the wrong unit.
+constexpr NumberRange kContrast{0.0, 10.0, true};
+constexpr NumberRange kExposureUs{0.0, 1e6};
+constexpr NumberRange kTimeOffsetUs{-3e15, 3e15};  // either clock may start at 1970 or at 0
+constexpr NumberRange kTimeoutMs{0.0, 60e3, true};
+constexpr NumberRange kJumpMs{0.0, 3600e3, true};
+constexpr NumberRange kBufferedEvents{1.0, 4e9};
+constexpr NumberRange kOffsetDn{0.0, 255.0};
+
+using TimeMember = std::int64_t DeblurParameters::*;
+using InstantMember = ExposureInstant DeblurParameters::*;
+
+std::string boolText(bool value) {
+  return value ? "true" : "false";
+}
+
+template <typename Choice>
+using Choices = std::vector<std::pair<std::string, Choice>>;
+
+template <typename Choice>
+std::string wordFor(const Choices<Choice>& choices, Choice value) {
+  for (const auto& choice : choices) {
+    if (choice.second == value) {
+      return choice.first;
+    }
+  }
+  return {};
+}
+
+const Choices<ExposureInstant>& instants() {
+  static const Choices<ExposureInstant> choices = {{"start", ExposureInstant::kStart},
+                                                   {"mid", ExposureInstant::kMid},
+                                                   {"end", ExposureInstant::kEnd}};
+  return choices;
+}
+
+/// The whole units apart, so that no nanosecond of a long time is lost in a double.
+std::int64_t toNanoseconds(double value, std::int64_t ns_per_unit) {
+  const double whole = std::trunc(value);
+  return static_cast<std::int64_t>(whole) * ns_per_unit +
+         std::llround((value - whole) * static_cast<double>(ns_per_unit));
+}
+
+/// A duration, in the unit of the key outside and in nanoseconds inside.
+ConfigKey timeKey(const std::string& name, const std::string& unit, std::int64_t ns_per_unit,
+                  NumberRange range, TimeMember member, const std::string& doc) {
+  const double default_value =
+      static_cast<double>(DeblurParameters{}.*member) / static_cast<double>(ns_per_unit);
+  return numberKey({name, unit, numberText(default_value), doc}, range,
+                   [member, ns_per_unit](double value, ParameterDraft& draft) {
+                     draft.loaded.deblur.*member = toNanoseconds(value, ns_per_unit);
+                   });
+}
+
+ConfigKey instantKey(const std::string& name, InstantMember member, const std::string& doc) {
+  return choiceKey<ExposureInstant>(
+      {name, "", wordFor(instants(), DeblurParameters{}.*member), doc}, instants(),
+      [member](ExposureInstant value, ParameterDraft& draft) {
+        draft.loaded.deblur.*member = value;
+      });
+}
+
+ConfigKey thresholdKey(const std::string& name, double ContrastThresholds::*member,
+                       const std::string& polarity) {
+  return numberKey({name, "natural log", "from `biases`",
+                    "contrast threshold of " + polarity + " events; overrides `biases`"},
+                   kContrast, [member](double value, ParameterDraft& draft) {
+                     draft.loaded.deblur.thresholds.*member = value;
+                   });
+}
+
+ConfigKey weightingKey() {
+  const Choices<Weighting> choices = {{"time", Weighting::kTime}, {"counter", Weighting::kCounter}};
+  return choiceKey<Weighting>(
+      {"weighting", "", wordFor(choices, DeblurParameters{}.weighting),
+       "how long a latent value counts: the elapsed time until the pixel's next event (exact), or "
+       "the number of events in the frame until then (Lin et al., ICRA 2023)"},
+      choices,
+      [](Weighting value, ParameterDraft& draft) { draft.loaded.deblur.weighting = value; });
+}
+
+ConfigKey exposureSourceKey() {
+  const Choices<ExposureSource> choices = {{"topic", ExposureSource::kTopic},
+                                           {"parameter", ExposureSource::kParameter}};
+  return choiceKey<ExposureSource>(
+      {"exposure_source", "", wordFor(choices, DeblurParameters{}.exposure_source),
+       "where the exposure time comes from; without a message, `topic` falls back on the last one "
+       "received, then on `exposure_time_us`"},
+      choices, [](ExposureSource value, ParameterDraft& draft) {
+        draft.loaded.deblur.exposure_source = value;
+      });
+}
+
+ConfigKey maxBufferedEventsKey() {
+  return integerKey(
+      {"max_buffered_events", "events", std::to_string(DeblurParameters{}.max_buffered_events),
+       "events kept at most, buffered and waiting together; storage grows as needed"},
+      kBufferedEvents, [](std::int64_t value, ParameterDraft& draft) {
+        draft.loaded.deblur.max_buffered_events = static_cast<std::size_t>(value);
+      });
+}
+
+std::vector<ConfigKey> buildTopLevelKeys() {
+  return {
+      thresholdKey("contrast_threshold_on", &ContrastThresholds::on, "ON"),
+      thresholdKey("contrast_threshold_off", &ContrastThresholds::off, "OFF"),
+      mapKey({"biases", "", "none", "bias settings that the thresholds are computed from"},
+             biasKeys()),
+      weightingKey(),
+      instantKey("reference", &DeblurParameters::reference,
+                 "instant of the exposure that the latent image shows"),
+      instantKey("stamp_reference", &DeblurParameters::stamp_reference,
+                 "instant of the exposure that the stamp of an input image means"),
+      exposureSourceKey(),
+      timeKey("exposure_time_us", "us", kNanosecondsPerMicrosecond, kExposureUs,
+              &DeblurParameters::exposure_time_ns, "exposure time; 0 = not known"),
+      timeKey("time_offset_us", "us", kNanosecondsPerMicrosecond, kTimeOffsetUs,
+              &DeblurParameters::time_offset_ns, "clock of the events minus clock of the frames"),
+      timeKey("close_timeout_ms", "ms", kNanosecondsPerMillisecond, kTimeoutMs,
+              &DeblurParameters::close_timeout_ns,
+              "from a frame's arrival until it is closed with the events that have come"),
+      maxBufferedEventsKey(),
+      timeKey("max_backward_jump_ms", "ms", kNanosecondsPerMillisecond, kJumpMs,
+              &DeblurParameters::max_backward_jump_ns,
+              "an event older than the newest by more than this is a jump of the clock, by less "
+              "a late event"),
+      timeKey("max_forward_jump_ms", "ms", kNanosecondsPerMillisecond, kJumpMs,
+              &DeblurParameters::max_forward_jump_ns,
+              "an event ahead of the newest by more than this is a jump of the clock, once the "
+              "next array confirms it"),
+      textKey({"response_file", "", "none",
+               "camera response: 256 natural-log irradiances, one for each 8-bit DN; a relative "
+               "path starts at the configuration file"},
+              [](const std::string& value, ParameterDraft& draft) { draft.response_file = value; }),
+      numberKey(
+          {"response_offset_dn", "DN", "0", "offset d of the linear response, exposure = DN + d"},
+          kOffsetDn, [](double value, ParameterDraft& draft) { draft.response_offset_dn = value; }),
+      textKey({"frame_id", "", "\"\"", "replaces an empty frame_id of the input images"},
+              [](const std::string& value, ParameterDraft& draft) {
+                draft.loaded.ros.frame_id = value;
+              }),
+      boolKey({"passthrough", "", boolText(DeblurParameters{}.passthrough),
+               "publish every frame unchanged"},
+              [](bool value, ParameterDraft& draft) { draft.loaded.deblur.passthrough = value; }),
+      boolKey({"lazy", "", boolText(RosParameters{}.lazy),
+               "subscribe to the inputs only while somebody subscribes to an output image"},
+              [](bool value, ParameterDraft& draft) { draft.loaded.ros.lazy = value; }),
+  };
+}
+
+std::vector<ParameterDescription> descriptionsOf(const std::vector<ConfigKey>& keys) {
+  std::vector<ParameterDescription> descriptions;
+  for (const ConfigKey& key : keys) {
+    descriptions.push_back(key.description);
+  }
+  return descriptions;
+}
+
+}  // namespace
+
+const std::vector<ConfigKey>& topLevelKeys() {
+  static const std::vector<ConfigKey> keys = buildTopLevelKeys();
+  return keys;
+}
+
+std::vector<ParameterDescription> parameterDescriptions() {
+  return descriptionsOf(topLevelKeys());
+}
+
+std::vector<ParameterDescription> biasDescriptions() {
+  return descriptionsOf(biasKeys());
+}
+
+std::string markdownTable(const std::vector<ParameterDescription>& descriptions) {
+  std::string table =
+      "| name | type | values | unit | default | meaning |\n|---|---|---|---|---|---|\n";
+  for (const ParameterDescription& key : descriptions) {
+    table += "| `" + key.name + "` | " + key.type + " | " + key.range + " | " + key.unit + " | " +
+             key.default_value + " | " + key.doc + " |\n";
+  }
+  return table;
+}
+
+}  // namespace fast_edi

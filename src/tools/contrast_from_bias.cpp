@@ -1,0 +1,131 @@
+/// \file
+/// `contrast_from_bias`: the bias currents and contrast thresholds behind a configuration file.
+
+#include <exception>
+#include <iomanip>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <boost/program_options.hpp>
+
+#include "fast_edi/config/parameters_from_yaml.hpp"
+#include "fast_edi/core/contrast_from_bias.hpp"
+
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr int kDone = 0;
+constexpr int kBadConfiguration = 1;
+constexpr int kBadUsage = 2;
+
+constexpr int kNameWidth = 12;
+constexpr int kValueWidth = 8;
+constexpr int kNumberWidth = 14;
+
+struct Arguments {
+  std::string file;
+  std::vector<std::string> overrides;
+};
+
+void printHelp(const po::options_description& options) {
+  std::cout << "Usage: contrast_from_bias FILE.yaml [key:=value ...]\n\n"
+               "Prints the bias currents and contrast thresholds that a configuration stands for, "
+               "e.g. of\ncfg/davis346.yaml. Values given as key:=value replace those of the file, "
+               "e.g. biases/OnBn_fine:=200.\n\n"
+            << options
+            << "\nExit code: 0 thresholds printed (warnings included); 1 the configuration cannot "
+               "be used;\n2 wrong arguments.\n";
+}
+
+/// \return false when help was asked for and given
+bool parseArguments(int argc, char** argv, Arguments& arguments) {
+  po::options_description visible("Options");
+  visible.add_options()("help,h", "print this");
+  po::options_description all;
+  all.add(visible).add_options()("file", po::value(&arguments.file)->required())(
+      "override", po::value(&arguments.overrides));
+  po::positional_options_description positional;
+  positional.add("file", 1).add("override", -1);
+  po::variables_map values;
+  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  if (values.count("help") > 0) {
+    printHelp(visible);
+    return false;
+  }
+  if (values.count("file") == 0) {
+    throw po::error("expected a configuration file; --help tells more");
+  }
+  po::notify(values);
+  return true;
+}
+
+void printBias(const std::string& name, const fast_edi::BiasSetting& bias,
+               fast_edi::CoarseConvention convention) {
+  std::cout << std::left << std::setw(kNameWidth) << name << std::right << std::setw(kValueWidth)
+            << bias.coarse << std::setw(kValueWidth) << bias.fine << std::scientific
+            << std::setprecision(6) << std::setw(kNumberWidth + 4)
+            << fast_edi::biasCurrent(bias, convention) << "\n"
+            << std::defaultfloat;
+}
+
+void printBiases(const fast_edi::BiasConfiguration& biases) {
+  const bool jaer = biases.convention == fast_edi::CoarseConvention::kJaerXml;
+  std::cout << std::left << std::setw(kNameWidth) << "bias" << std::right << std::setw(kValueWidth)
+            << "coarse" << std::setw(kValueWidth) << "fine" << std::setw(kNumberWidth + 4)
+            << "current [A]"
+            << "\n";
+  printBias("DiffBn", biases.diff, biases.convention);
+  printBias("OnBn", biases.on, biases.convention);
+  printBias("OffBn", biases.off, biases.convention);
+  std::cout << "coarse values as in " << (jaer ? "jAER's XML" : "libcaer") << "\n\n"
+            << "K = kappa_n / (kappa_p^2 C1/C2) = " << fast_edi::contrastGain(biases)
+            << "   (kappa_n " << biases.kappa_n << ", kappa_p " << biases.kappa_p << ", C1/C2 "
+            << biases.capacitor_ratio << ")\n\n";
+}
+
+void printThreshold(const std::string& name, double threshold, bool from_biases) {
+  std::cout << std::left << std::setw(kNameWidth) << name << std::right << std::fixed
+            << std::setprecision(6) << std::setw(kNumberWidth) << threshold << "   "
+            << (from_biases ? "from biases" : "given") << "\n"
+            << std::defaultfloat;
+}
+
+void run(const Arguments& arguments) {
+  const fast_edi::LoadedParameters parameters =
+      fast_edi::parametersFromFile(arguments.file, arguments.overrides);
+  if (parameters.biases) {
+    printBiases(*parameters.biases);
+  }
+  std::cout << std::left << std::setw(kNameWidth) << "threshold" << std::right
+            << std::setw(kNumberWidth) << "natural log"
+            << "\n";
+  const fast_edi::ContrastThresholds& thresholds = parameters.deblur.thresholds;
+  printThreshold("C_ON", thresholds.on, parameters.from_biases.on);
+  printThreshold("C_OFF", -thresholds.off, parameters.from_biases.off);
+  for (const std::string& warning : parameters.warnings) {
+    std::cerr << "warning: " << warning << "\n";
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    Arguments arguments;
+    if (parseArguments(argc, argv, arguments)) {
+      run(arguments);
+    }
+    return kDone;
+  } catch (const fast_edi::ParameterError& error) {
+    std::cerr << error.what() << "\n";
+    return kBadConfiguration;
+  } catch (const po::error& error) {
+    std::cerr << "contrast_from_bias: " << error.what() << "\n";
+    return kBadUsage;
+  } catch (const std::exception& error) {
+    std::cerr << "contrast_from_bias: " << error.what() << "\n";
+    return kBadConfiguration;
+  }
+}
