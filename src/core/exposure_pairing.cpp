@@ -41,6 +41,10 @@ void ExposurePairing::addImage(std::uint64_t image, std::int64_t now_ns,
     matches.push_back({image, std::nullopt});
     return;
   }
+  if (isOneMessageAhead(now_ns)) {
+    dropMessages(1);
+  }
+  last_image_ns_ = now_ns;
   if (messages_.empty()) {
     images_.push_back({image, now_ns});
   } else {
@@ -67,6 +71,7 @@ void ExposurePairing::addMessage(std::int32_t exposure_us, std::int64_t now_ns,
   } else {
     matches.push_back({images_.front().image, length_ns});
     images_.pop_front();
+    ahead_since_ns_.reset();
   }
   watch(now_ns);
 }
@@ -110,6 +115,8 @@ void ExposurePairing::restart() {
   deaf_ = false;
   first_image_ns_.reset();
   least_unmatched_ = 0;
+  last_image_ns_.reset();
+  ahead_since_ns_.reset();
 }
 
 void ExposurePairing::dropImages(std::size_t count, std::vector<ExposureMatch>& matches) {
@@ -125,6 +132,25 @@ void ExposurePairing::dropMessages(std::size_t count) {
     messages_.pop_front();
     ++counters_.exposures_surplus;
   }
+}
+
+/// True when images have been finding an old message all through a timeout. A message waits for an
+/// image, and has waited for most of a period, when it belongs to the image before.
+bool ExposurePairing::isOneMessageAhead(std::int64_t now_ns) {
+  const bool old = !messages_.empty() && last_image_ns_ &&
+                   2 * (now_ns - messages_.front().arrival_ns) > now_ns - *last_image_ns_;
+  if (!old) {
+    ahead_since_ns_.reset();
+    return false;
+  }
+  if (!ahead_since_ns_) {
+    ahead_since_ns_ = now_ns;
+  }
+  if (now_ns - *ahead_since_ns_ < timeout_ns_) {
+    return false;
+  }
+  ahead_since_ns_.reset();
+  return true;
 }
 
 /// Keeps least_unmatched_ up after images_ or messages_ changed by one.

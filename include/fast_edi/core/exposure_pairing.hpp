@@ -7,10 +7,13 @@
 /// Rules
 /// - An image waits for its message until the timeout; then the message counts as missing. A
 ///   message waits for its image just as long; then it counts as surplus.
-/// - Losing one message (or one image) leaves every later image with its neighbour's message,
-///   a frame period late, and no timeout ever strikes when the period is shorter. So: when at least
-///   one image was without its message all through a timeout, that many messages are missing, and
-///   the pairing starts anew behind the images that waited for them; likewise for messages.
+/// - A message that gets lost leaves every later image with its successor's message, a period late,
+///   and no timeout strikes when the period is shorter. So: when all through a timeout at least one
+///   image was waiting, that many messages are missing, and the pairing starts anew behind the
+///   images that waited for them. The same holds for messages.
+/// - An image that gets lost leaves every later image with its predecessor's message. So: when all
+///   through a timeout each image found a message that had been there for more than half the time
+///   since the image before, one message is surplus.
 /// - When nothing was heard within the first timeout, images do not wait until a message comes.
 /// That
 ///   message belongs to an image that did not wait for it; pairing starts at the next image.
@@ -72,6 +75,7 @@ class ExposurePairing {
   std::optional<std::int64_t> read(std::int32_t exposure_us);
   void dropImages(std::size_t count, std::vector<ExposureMatch>& matches);
   void dropMessages(std::size_t count);
+  bool isOneMessageAhead(std::int64_t now_ns);
   void watch(std::int64_t now_ns);
   void watchAnew(std::int64_t now_ns);
 
@@ -90,6 +94,9 @@ class ExposurePairing {
   // How many have been waiting all the time since unmatched_since_ns_.
   std::size_t least_unmatched_ = 0;
   std::int64_t unmatched_since_ns_ = 0;
+
+  std::optional<std::int64_t> last_image_ns_;   ///< its arrival
+  std::optional<std::int64_t> ahead_since_ns_;  ///< each image since then found an old message
 };
 
 }  // namespace fast_edi
