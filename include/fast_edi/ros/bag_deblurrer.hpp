@@ -6,17 +6,16 @@
 #include <cstdint>
 #include <functional>
 #include <iosfwd>
+#include <string>
 #include <vector>
 
 #include <ros/time.h>
-#include <sensor_msgs/CameraInfo.h>
-#include <sensor_msgs/Image.h>
 
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/core/deblurrer.hpp"
+#include "fast_edi/core/deblur_counters.hpp"
+#include "fast_edi/ros/bag_pipeline.hpp"
 #include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/bag_writer.hpp"
-#include "fast_edi/ros/message_frame_sink.hpp"
 #include "fast_edi/ros/topic_names.hpp"
 
 namespace fast_edi {
@@ -57,24 +56,14 @@ class BagDeblurrer {
   BagDeblurReport run();
 
  private:
-  enum class Use { kNone, kEvents, kImage, kExposure, kCameraInfo };
-  struct Output {
-    sensor_msgs::ImagePtr image;
-    sensor_msgs::CameraInfoPtr info;
-  };
-
-  Use useOf(const BagConnection& connection) const;
-  /// \return false for a message that contradicts itself
-  bool use(const BagMessage& message, std::int64_t now_ns);
   void writeOutputs(const ros::Time& record_time);
 
   BagReader& reader_;
   BagWriter& writer_;
-  const TopicNames topics_;
+  const std::string image_topic_;
+  const std::string camera_info_topic_;
   const Progress progress_;
-  MessageFrameSink sink_;
-  Deblurrer deblurrer_;
-  std::vector<Output> outputs_;  ///< finished by the pipeline, not written yet
+  BagPipeline pipeline_;
   BagDeblurReport report_;
 };
 
