@@ -1,0 +1,151 @@
+#include "contender.hpp"
+
+#include <stdexcept>
+
+#include "fast_edi/core/deblurrer.hpp"
+#include "support/paper_lists.hpp"
+#include "support/vanilla_edi.hpp"
+
+namespace fast_edi::benchmarks {
+
+namespace {
+
+constexpr ContrastThresholds kThresholds{0.3, 0.3};
+/// More than any benchmark buffers, so that none of them measures an overflow.
+constexpr std::size_t kMaxBufferedEvents = 40'000'000;
+
+/// Writes into memory that the caller of close() names.
+class MemorySink : public FrameSink {
+ public:
+  MutableImageView begin(const InputFrame& input) override {
+    return {latent, input.image.size, input.image.step, input.image.format};
+  }
+  void finish(const OutputFrame&) override { ++finished; }
+
+  std::uint8_t* latent = nullptr;
+  std::uint64_t finished = 0;
+};
+
+class Ours : public Contender {
+ public:
+  explicit Ours(SensorSize size) : size_(size), deblurrer_(parameters(), sink_) {}
+
+  void begin(const ExposureInterval&) override {}
+  void add(const WireEvents& events) override {
+    deblurrer_.addEvents(events, size_, ++sequence_, ++clock_ns_);
+  }
+  void close(const ExposureInterval& exposure, const std::uint8_t* blurry,
+             std::uint8_t* latent) override {
+    sink_.latent = latent;
+    ++frames_;
+    InputFrame frame;
+    frame.stamp_ns = exposure.at(ExposureInstant::kMid);
+    frame.image = {blurry, size_, static_cast<std::size_t>(size_.width), PixelFormat::kMono8};
+    deblurrer_.addFrame(std::move(frame), ++clock_ns_);
+    if (sink_.finished != frames_) throw std::logic_error("the frame was not closed at once");
+  }
+  std::string fault(Exposures exposures) const override {
+    const DeblurCounters& counters = deblurrer_.counters();
+    if (counters.frames_deblurred != frames_) return "a frame was passed through";
+    const std::uint64_t kind =
+        exposures == Exposures::kSurprise ? counters.closes_surprise : counters.closes_followed;
+    // The first two frames cannot be predicted; a few more may lie across a quantum of time.
+    constexpr std::uint64_t kLearning = 2;
+    if (10 * kind < 8 * (frames_ - kLearning)) {
+      return std::to_string(counters.closes_followed) + " windows followed, " +
+             std::to_string(counters.closes_surprise) + " surprises, expected mostly " +
+             (exposures == Exposures::kSurprise ? "surprises" : "followed ones");
+    }
+    return {};
+  }
+
+ private:
+  static DeblurParameters parameters() {
+    DeblurParameters parameters;
+    parameters.thresholds = kThresholds;
+    parameters.exposure_source = ExposureSource::kParameter;
+    parameters.exposure_time_ns = 30 * kNanosecondsPerMillisecond;
+    parameters.max_buffered_events = kMaxBufferedEvents;
+    return parameters;
+  }
+
+  SensorSize size_;
+  MemorySink sink_;
+  Deblurrer deblurrer_;
+  std::uint32_t sequence_ = 0;
+  std::int64_t clock_ns_ = 0;
+  std::uint64_t frames_ = 0;
+};
+
+class Paper : public Contender {
+ public:
+  explicit Paper(SensorSize size) : lists_(size, kThresholds, Weighting::kCounter) {}
+
+  void begin(const ExposureInterval&) override {}
+  void add(const WireEvents& events) override { lists_.add(events); }
+  void close(const ExposureInterval& exposure, const std::uint8_t* blurry,
+             std::uint8_t* latent) override {
+    lists_.close(exposure, exposure.at(ExposureInstant::kMid), blurry, latent);
+  }
+  std::string fault(Exposures) const override { return {}; }
+
+ private:
+  testing::PaperLists lists_;
+};
+
+class Vanilla : public Contender {
+ public:
+  explicit Vanilla(SensorSize size) : edi_(size, kThresholds) {}
+
+  void begin(const ExposureInterval& exposure) override {
+    edi_.begin(exposure, exposure.at(ExposureInstant::kMid));
+  }
+  void add(const WireEvents& events) override { edi_.add(events); }
+  void close(const ExposureInterval&, const std::uint8_t* blurry, std::uint8_t* latent) override {
+    edi_.writeImage(blurry, latent);
+  }
+  std::string fault(Exposures) const override { return {}; }
+
+ private:
+  testing::VanillaEdi edi_;
+};
+
+}  // namespace
+
+const char* toString(Exposures exposures) {
+  switch (exposures) {
+    case Exposures::kPeriodic:
+      return "periodic";
+    case Exposures::kJittering:
+      return "jittering";
+    case Exposures::kSurprise:
+      return "surprise";
+  }
+  return "unknown";
+}
+
+const char* toString(Method method) {
+  switch (method) {
+    case Method::kOurs:
+      return "ours";
+    case Method::kPaper:
+      return "paper";
+    case Method::kVanilla:
+      return "vanilla";
+  }
+  return "unknown";
+}
+
+std::unique_ptr<Contender> makeContender(Method method, SensorSize size) {
+  switch (method) {
+    case Method::kOurs:
+      return std::make_unique<Ours>(size);
+    case Method::kPaper:
+      return std::make_unique<Paper>(size);
+    case Method::kVanilla:
+      return std::make_unique<Vanilla>(size);
+  }
+  throw std::invalid_argument("no such method");
+}
+
+}  // namespace fast_edi::benchmarks

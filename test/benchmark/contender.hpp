@@ -1,0 +1,44 @@
+/// \file
+/// What the benchmarks compare, behind one interface: wire events in, 8-bit images out.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "fast_edi/core/event_wire.hpp"
+#include "fast_edi/core/types.hpp"
+
+namespace fast_edi::benchmarks {
+
+/// How the exposures of a run lie; decides what can be known of them beforehand.
+enum class Exposures {
+  kPeriodic,   ///< as predicted
+  kJittering,  ///< some 20 us off: the prediction has to be corrected
+  kSurprise,   ///< some ms off: the prediction is of no use
+};
+const char* toString(Exposures exposures);
+
+class Contender {
+ public:
+  virtual ~Contender() = default;
+  /// Called before the exposure begins; what has to know the window beforehand uses it.
+  virtual void begin(const ExposureInterval& exposure) = 0;
+  virtual void add(const WireEvents& events) = 0;
+  /// Writes the latent image at mid-exposure.
+  virtual void close(const ExposureInterval& exposure, const std::uint8_t* blurry,
+                     std::uint8_t* latent) = 0;
+  /// Empty, or what went wrong: a measurement of something else than it says is worth nothing.
+  virtual std::string fault(Exposures exposures) const = 0;
+};
+
+enum class Method {
+  kOurs,     ///< the whole pipeline (Deblurrer), time weighting
+  kPaper,    ///< std::vector per pixel of <t, exp value, counter>
+  kVanilla,  ///< the whole image added at every event
+};
+const char* toString(Method method);
+
+std::unique_ptr<Contender> makeContender(Method method, SensorSize size);
+
+}  // namespace fast_edi::benchmarks

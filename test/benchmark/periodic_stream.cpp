@@ -1,0 +1,72 @@
+#include "periodic_stream.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+namespace fast_edi::benchmarks {
+
+namespace {
+
+constexpr std::int64_t kFirstStart_ns = 1'000'000'000 * kNanosecondsPerSecond;
+constexpr std::size_t kSecondsOffset = 4;
+constexpr std::size_t kNanosecondsOffset = 8;
+constexpr std::uint64_t kSeed = 1;
+
+/// Adds less than a second to a record's stamp.
+void moveOn(std::uint8_t* record, std::uint32_t by_ns) {
+  std::uint32_t sec, nsec;
+  std::memcpy(&sec, record + kSecondsOffset, sizeof sec);
+  std::memcpy(&nsec, record + kNanosecondsOffset, sizeof nsec);
+  nsec += by_ns;
+  if (nsec >= kNanosecondsPerSecond) {
+    nsec -= static_cast<std::uint32_t>(kNanosecondsPerSecond);
+    ++sec;
+  }
+  std::memcpy(record + kSecondsOffset, &sec, sizeof sec);
+  std::memcpy(record + kNanosecondsOffset, &nsec, sizeof nsec);
+}
+
+}  // namespace
+
+PeriodicStream::PeriodicStream(const StreamSettings& settings)
+    : settings_(settings), start_ns_(kFirstStart_ns) {
+  const auto count = static_cast<std::size_t>(
+      static_cast<std::int64_t>(settings.events_per_exposure) * kPeriod_ns / kExposure_ns);
+  const std::vector<Event> events =
+      testing::makeEvents(settings.scene, {settings.size, count, start_ns_, kPeriod_ns, kSeed});
+  wire_ = testing::toWire(events);
+  for (std::int64_t begin_ns = 0; begin_ns <= kPeriod_ns; begin_ns += kPacket_ns) {
+    const auto first =
+        std::lower_bound(events.begin(), events.end(), start_ns_ + begin_ns,
+                         [](const Event& event, std::int64_t t_ns) { return event.t_ns < t_ns; });
+    packet_begin_.push_back(static_cast<std::size_t>(first - events.begin()));
+  }
+}
+
+WireEvents PeriodicStream::packet(std::size_t index) const {
+  return {wire_.data() + packet_begin_[index] * kWireEventBytes,
+          packet_begin_[index + 1] - packet_begin_[index]};
+}
+
+void PeriodicStream::next() {
+  for (std::size_t i = 0; i < wire_.size(); i += kWireEventBytes) {
+    moveOn(wire_.data() + i, static_cast<std::uint32_t>(kPeriod_ns));
+  }
+  start_ns_ += kPeriod_ns;
+}
+
+PeriodicStream& sharedStream(const StreamSettings& settings) {
+  static std::unique_ptr<PeriodicStream> kept;
+  if (!kept || !(kept->settings() == settings)) {
+    kept.reset();  // before the next one is made: one takes up to 600 MB
+    kept = std::make_unique<PeriodicStream>(settings);
+  }
+  return *kept;
+}
+
+std::string toString(SensorSize size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+}  // namespace fast_edi::benchmarks
