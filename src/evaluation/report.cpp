@@ -1,0 +1,315 @@
+#include "fast_edi/evaluation/report.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <ostream>
+#include <sstream>
+#include <stdexcept>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "fast_edi/evaluation/plot.hpp"
+
+namespace fast_edi {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kNoValue[] = "-";
+
+std::string fixed(double value, int decimals) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(decimals) << value;
+  return text.str();
+}
+
+std::string cell(const std::optional<double>& value, int decimals) {
+  return value ? fixed(*value, decimals) : kNoValue;
+}
+
+std::string gainOver(const std::optional<double>& value, const std::optional<double>& base) {
+  if (!value || !base || *base <= 0.0) {
+    return "";
+  }
+  const double percent = 100.0 * (*value / *base - 1.0);
+  return std::string(" (") + (percent >= 0.0 ? "+" : "") + fixed(percent, 0) + " %)";
+}
+
+std::string nameWithUnit(const MeasureInfo& info) {
+  std::string name = info.name;
+  if (info.unit[0] != '\0') {
+    name += std::string(" [") + info.unit + "]";
+  }
+  return name;
+}
+
+/// Methods that have any figure in the group: truth is often not known.
+std::vector<Method> methodsIn(const EvaluationGroup& group) {
+  std::vector<Method> methods;
+  for (const Method method : kAllMethods) {
+    const bool has_truth_only = method == Method::kTruth;
+    const bool shown =
+        !has_truth_only ||
+        std::any_of(group.members.begin(), group.members.end(), [method](const Evaluation* member) {
+          return !member->example[indexOf(method)].empty();
+        });
+    if (shown) {
+      methods.push_back(method);
+    }
+  }
+  return methods;
+}
+
+void printHeader(std::ostream& out, const std::string& first, const std::vector<Method>& methods) {
+  out << "| " << first << " |";
+  for (const Method method : methods) {
+    out << " " << toString(method) << " |";
+  }
+  out << "\n|---|";
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    out << "---:|";
+  }
+  out << "\n";
+}
+
+bool anyMethodHas(const EvaluationGroup& group, Measure measure) {
+  return std::any_of(kAllMethods.begin(), kAllMethods.end(), [&](Method method) {
+    return meanOver(group.members, method, measure).has_value();
+  });
+}
+
+std::vector<Measure> measuresIn(const EvaluationGroup& group) {
+  std::vector<Measure> measures;
+  for (std::size_t i = 0; i < kMeasureCount; ++i) {
+    if (anyMethodHas(group, static_cast<Measure>(i))) {
+      measures.push_back(static_cast<Measure>(i));
+    }
+  }
+  return measures;
+}
+
+void writePicture(const fs::path& path, const cv::Mat& picture) {
+  bool written = false;
+  try {
+    written = cv::imwrite(path.string(), picture);
+  } catch (const cv::Exception& error) {
+    throw std::runtime_error("cannot write " + path.string() + ": " + error.what());
+  }
+  if (!written) {
+    throw std::runtime_error("cannot write " + path.string());
+  }
+}
+
+std::ofstream openForWriting(const fs::path& path) {
+  std::ofstream file(path);
+  if (!file) {
+    throw std::runtime_error("cannot write " + path.string());
+  }
+  return file;
+}
+
+void closeWritten(std::ofstream& file, const fs::path& path) {
+  file.close();
+  if (!file) {
+    throw std::runtime_error("cannot write " + path.string());
+  }
+}
+
+std::string fileNameOf(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(),
+      [](unsigned char c) { return std::isalnum(c) == 0 && c != '-' && c != '_'; }, '_');
+  return name;
+}
+
+void writeCsv(const fs::path& path, const std::vector<EvaluationGroup>& groups) {
+  constexpr int kDigits = 8;
+  std::ofstream file = openForWriting(path);
+  file << "group,recording,stamp_ns,exposure_ns,events,searched_contrast,method,runtime_ms";
+  for (std::size_t i = 0; i < kMeasureCount; ++i) {
+    file << "," << describe(static_cast<Measure>(i)).name;
+  }
+  file << "\n" << std::setprecision(kDigits);
+  for (const EvaluationGroup& group : groups) {
+    const std::vector<Method> methods = methodsIn(group);
+    for (const Evaluation* member : group.members) {
+      for (const FrameFigures& frame : member->frames) {
+        for (const Method method : methods) {
+          file << group.name << "," << member->name << "," << frame.stamp_ns << ","
+               << frame.exposure_ns << "," << frame.events << "," << frame.searched_contrast << ","
+               << toString(method) << "," << frame.runtime_ms[indexOf(method)];
+          for (const std::optional<double>& score : frame.scores[indexOf(method)]) {
+            file << ",";
+            if (score) {
+              file << *score;
+            }
+          }
+          file << "\n";
+        }
+      }
+    }
+  }
+  closeWritten(file, path);
+}
+
+cv::Mat examplePicture(const Evaluation& evaluation) {
+  constexpr int kColumns = 3;
+  constexpr int kScale = 2;
+  std::vector<CaptionedPicture> pictures;
+  for (const Method method : kAllMethods) {
+    pictures.push_back({toString(method), evaluation.example[indexOf(method)]});
+  }
+  return pictureGrid(pictures, kColumns, kScale);
+}
+
+/// One recording: values over its frames. Several: bars over them.
+cv::Mat measurePicture(const EvaluationGroup& group, Measure measure) {
+  const MeasureInfo& info = describe(measure);
+  const PlotLabels labels = {
+      group.name + ": " + info.name +
+          (info.higher_is_better ? " (higher is better)" : " (lower is better)"),
+      group.members.size() == 1 ? "frame" : "", nameWithUnit(info)};
+  std::vector<PlotSeries> series;
+  std::vector<std::string> names;
+  for (const Evaluation* member : group.members) {
+    names.push_back(member->name);
+  }
+  for (const Method method : methodsIn(group)) {
+    PlotSeries line = {toString(method), {}};
+    if (group.members.size() == 1) {
+      for (const FrameFigures& frame : group.members.front()->frames) {
+        line.values.push_back(frame.scores[indexOf(method)][indexOf(measure)]);
+      }
+    } else {
+      for (const Evaluation* member : group.members) {
+        line.values.push_back(member->mean(method, measure));
+      }
+    }
+    series.push_back(std::move(line));
+  }
+  return group.members.size() == 1 ? linePlot(labels, series) : barPlot(labels, names, series);
+}
+
+void writeFrameCounts(std::ostream& out, const EvaluationGroup& group) {
+  for (const Evaluation* member : group.members) {
+    out << "- " << member->name << ": " << member->frames.size() << " frames compared";
+    for (const auto& [reason, count] : member->left_out) {
+      out << ", " << count << " left out (" << reason << ")";
+    }
+    out << "\n";
+  }
+  out << "\n";
+}
+
+void writeGroup(std::ostream& out, const fs::path& folder, const EvaluationGroup& group) {
+  out << "## " << group.name << "\n\n";
+  writeFrameCounts(out, group);
+  printMeasureTable(out, group);
+  out << "\n";
+  for (const Measure measure : measuresIn(group)) {
+    if (group.members.size() > 1 && (measure == Measure::kPsnr || measure == Measure::kSsim)) {
+      out << nameWithUnit(describe(measure)) << ":\n\n";
+      printMemberTable(out, group, measure);
+      out << "\n";
+    }
+    const std::string file =
+        fileNameOf(group.name) + "_" + fileNameOf(describe(measure).name) + ".png";
+    writePicture(folder / file, measurePicture(group, measure));
+    out << "![" << describe(measure).name << "](" << file << ")\n\n";
+  }
+  for (const Evaluation* member : group.members) {
+    if (member->frames.empty()) {
+      continue;
+    }
+    const std::string file = "example_" + fileNameOf(member->name) + ".png";
+    writePicture(folder / file, examplePicture(*member));
+    out << member->name << ", the frame with the most events (stamp " << member->example_stamp_ns
+        << " ns):\n\n![" << member->name << "](" << file << ")\n\n";
+  }
+}
+
+}  // namespace
+
+void printMeasureTable(std::ostream& out, const EvaluationGroup& group) {
+  const std::vector<Method> methods = methodsIn(group);
+  printHeader(out, "mean", methods);
+  for (const Measure measure : measuresIn(group)) {
+    const MeasureInfo& info = describe(measure);
+    const std::optional<double> blurry = meanOver(group.members, Method::kBlurry, measure);
+    out << "| " << nameWithUnit(info) << (info.higher_is_better ? "" : ", lower is better") << " |";
+    for (const Method method : methods) {
+      const std::optional<double> value = meanOver(group.members, method, measure);
+      out << " " << cell(value, info.decimals)
+          << (info.is_count && method != Method::kBlurry ? gainOver(value, blurry) : "") << " |";
+    }
+    out << "\n";
+  }
+}
+
+void printMemberTable(std::ostream& out, const EvaluationGroup& group, Measure measure) {
+  const std::vector<Method> methods = methodsIn(group);
+  const int decimals = describe(measure).decimals;
+  printHeader(out, "recording", methods);
+  for (const Evaluation* member : group.members) {
+    out << "| " << member->name << " |";
+    for (const Method method : methods) {
+      out << " " << cell(member->mean(method, measure), decimals) << " |";
+    }
+    out << "\n";
+  }
+  out << "| mean |";
+  for (const Method method : methods) {
+    out << " " << cell(meanOver(group.members, method, measure), decimals) << " |";
+  }
+  out << "\n";
+}
+
+void printRuntimeTable(std::ostream& out, const EvaluationGroup& group) {
+  constexpr int kDecimals = 2;
+  out << "| run time per frame [ms] | median | worst |\n|---|---:|---:|\n";
+  for (const Method method : kAllMethods) {
+    if (method == Method::kBlurry || method == Method::kTruth) {
+      continue;
+    }
+    Evaluation all;
+    for (const Evaluation* member : group.members) {
+      all.frames.insert(all.frames.end(), member->frames.begin(), member->frames.end());
+    }
+    out << "| " << toString(method) << " | " << fixed(all.medianRuntimeMs(method), kDecimals)
+        << " | " << fixed(all.maxRuntimeMs(method), kDecimals) << " |\n";
+  }
+}
+
+std::string writeReport(const std::string& folder, const ReportText& text,
+                        const std::vector<EvaluationGroup>& groups) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw std::runtime_error("cannot create folder " + folder + ": " + error.message());
+  }
+  const fs::path page = fs::path(folder) / "report.md";
+  std::ofstream out = openForWriting(page);
+  out << "# " << text.title << "\n\n";
+  if (!text.command.empty()) {
+    out << "Made by\n\n```\n" << text.command << "\n```\n\n";
+  }
+  for (const std::string& note : text.notes) {
+    out << "- " << note << "\n";
+  }
+  out << "\n";
+  EvaluationGroup all{"all", {}};
+  for (const EvaluationGroup& group : groups) {
+    writeGroup(out, folder, group);
+    all.members.insert(all.members.end(), group.members.begin(), group.members.end());
+  }
+  out << "## Run time\n\nWall clock of this machine, taking in events and closing.\n\n";
+  printRuntimeTable(out, all);
+  closeWritten(out, page);
+  writeCsv(fs::path(folder) / "figures.csv", groups);
+  return page.string();
+}
+
+}  // namespace fast_edi

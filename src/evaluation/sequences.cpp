@@ -1,0 +1,133 @@
+#include "fast_edi/evaluation/sequences.hpp"
+
+#include <array>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "fast_edi/simulation/davis_simulator.hpp"
+
+namespace fast_edi {
+namespace {
+
+struct NamedScene {
+  const char* name;
+  bool for_tuning;
+  TextureKind texture;
+  double density;
+  int tags;
+  MotionKind motion;
+  double illumination;
+  std::int64_t exposure_us;
+};
+
+constexpr double kBright = 1.0;
+constexpr double kDim = 0.25;
+constexpr std::int64_t kPeriodUs = 40'000;
+
+constexpr std::array<NamedScene, 6> kScenes = {{
+    {"poster-strong", true, TextureKind::kPoster, 0.6, 6, MotionKind::kShake, kBright, 25'000},
+    {"poster-mild-dim", true, TextureKind::kPoster, 0.6, 6, MotionKind::kMild, kDim, 25'000},
+    {"sparse-sweep", true, TextureKind::kPoster, 0.1, 2, MotionKind::kPan, kBright, 20'000},
+    {"leaves-strong-dim", false, TextureKind::kNatural, 0.0, 6, MotionKind::kShake, kDim, 25'000},
+    {"leaves-mild", false, TextureKind::kNatural, 0.0, 6, MotionKind::kMild, kBright, 20'000},
+    {"flat-spin", false, TextureKind::kFlat, 0.0, 2, MotionKind::kSpin, kBright, 20'000},
+}};
+
+SimulationSettings settingsOf(const NamedScene& scene, int frames, std::uint64_t seed) {
+  SimulationSettings settings;
+  settings.scene.texture = scene.texture;
+  settings.scene.density = scene.density;
+  settings.scene.tags = scene.tags;
+  settings.scene.illumination = scene.illumination;
+  settings.motion.kind = scene.motion;
+  settings.sensor.photoreceptor_bright_hz = 300.0;
+  settings.sensor.photoreceptor_dark_hz = 30.0;
+  settings.timing.frames = frames;
+  settings.timing.period_us = kPeriodUs;
+  settings.timing.exposure_us = scene.exposure_us;
+  settings.seed = seed;
+  return settings;
+}
+
+/// Events as wire records in arrays, as a driver sends them.
+class WireArrays {
+ public:
+  explicit WireArrays(SensorSize size) : size_(size) {}
+
+  void send(const std::vector<Event>& events, std::int64_t now_ns, MethodComparison& comparison) {
+    bytes_.clear();
+    bytes_.reserve(events.size() * kWireEventBytes);
+    for (const Event& event : events) {
+      encodeWireEvent(event, bytes_);
+    }
+    comparison.addEvents({bytes_.data(), events.size()}, size_, sequence_++, now_ns);
+  }
+
+ private:
+  SensorSize size_;
+  std::vector<std::uint8_t> bytes_;
+  std::uint32_t sequence_ = 0;
+};
+
+DeblurParameters sensorParameters(const DeblurParameters& parameters,
+                                  const SimulationSettings& settings, double threshold_factor) {
+  DeblurParameters known = parameters;
+  known.thresholds = {settings.sensor.thresholds.on * threshold_factor,
+                      settings.sensor.thresholds.off * threshold_factor};
+  known.exposure_source = ExposureSource::kParameter;
+  known.exposure_time_ns = settings.timing.exposure_us * kNanosecondsPerMicrosecond;
+  known.stamp_reference = ExposureInstant::kMid;
+  known.time_offset_ns = 0;
+  known.response = CameraResponse::linear();
+  return known;
+}
+
+}  // namespace
+
+std::vector<EvaluationSequence> evaluationSequences(int frames, int seeds) {
+  if (frames < 1 || seeds < 1) {
+    throw std::invalid_argument("sequences: expected at least one frame and one seed, got " +
+                                std::to_string(frames) + " and " + std::to_string(seeds));
+  }
+  std::vector<EvaluationSequence> sequences;
+  for (const NamedScene& scene : kScenes) {
+    for (int seed = 1; seed <= seeds; ++seed) {
+      sequences.push_back({std::string(scene.name) + "/" + std::to_string(seed), scene.for_tuning,
+                           settingsOf(scene, frames, static_cast<std::uint64_t>(seed))});
+    }
+  }
+  return sequences;
+}
+
+Evaluation evaluateSequence(const EvaluationSequence& sequence, const DeblurParameters& parameters,
+                            double threshold_factor, const ContrastSearchOptions& search,
+                            const FrameScorer& scorer, const std::function<void(int)>& progress) {
+  std::map<std::int64_t, cv::Mat> truths;
+  int done = 0;
+  EvaluationRecorder recorder(sequence.name, scorer, [&](std::int64_t stamp_ns) {
+    const auto found = truths.find(stamp_ns);
+    return found != truths.end() ? found->second : cv::Mat();
+  });
+  MethodComparison comparison(sensorParameters(parameters, sequence.settings, threshold_factor),
+                              search, [&](const ComparedFrame& frame) {
+                                recorder.add(frame);
+                                truths.erase(truths.begin(), truths.upper_bound(frame.stamp_ns));
+                                progress(++done);
+                              });
+
+  DavisSimulator simulator(sequence.settings);
+  WireArrays arrays(sequence.settings.sensor.size);
+  SimulatedInterval interval;
+  while (simulator.next(interval)) {
+    const std::int64_t stamp_ns = interval.frame.exposure.at(ExposureInstant::kMid);
+    truths[stamp_ns] = interval.frame.sharp;
+    // A frame leaves the camera when its exposure ends, before the last events that cover it.
+    comparison.addFrame(stamp_ns, interval.frame.blurry, interval.frame.exposure.end_ns);
+    arrays.send(interval.events, interval.end_ns, comparison);
+  }
+  comparison.finish();
+  return recorder.evaluation();
+}
+
+}  // namespace fast_edi
