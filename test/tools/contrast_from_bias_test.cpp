@@ -1,0 +1,56 @@
+/// The program `contrast_from_bias`, run as a user runs it.
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "support/command.hpp"
+
+namespace fast_edi {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+
+const std::string kTool = std::string(FAST_EDI_TOOLS_DIR) + "/contrast_from_bias ";
+const std::string kConfigurations = std::string(FAST_EDI_SOURCE_DIR) + "/cfg/";
+
+TEST(ContrastFromBiasTool, PrintsCurrentsGainAndThresholds) {
+  const auto result = testing::runCommand(kTool + kConfigurations + "davis346.yaml");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(
+      result.output,
+      AllOf(ContainsRegex("DiffBn +4 +39 +7.408012e-09"),
+            ContainsRegex("OnBn +5 +255 +3.875000e-07"), ContainsRegex("OffBn +4 +1 +1.899490e-10"),
+            HasSubstr("= 0.0659341"), ContainsRegex("C_ON +0.260911 +from biases"),
+            ContainsRegex("C_OFF +-0.241554 +from biases")));
+}
+
+TEST(ContrastFromBiasTool, TakesValuesInPlaceOfTheFiles) {
+  const auto result =
+      testing::runCommand(kTool + kConfigurations + "davis346.yaml contrast_threshold_on:=0.7");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.output, AllOf(ContainsRegex("C_ON +0.700000 +given"),
+                                   HasSubstr("warning: the ON contrast threshold is 0.7")));
+}
+
+TEST(ContrastFromBiasTool, RefusesABadConfiguration) {
+  const auto zero =
+      testing::runCommand(kTool + kConfigurations + "davis346.yaml biases/OffBn_fine:=0");
+  EXPECT_EQ(zero.exit_code, 1);
+  EXPECT_THAT(zero.output, HasSubstr("give contrast_threshold_off"));
+  const auto missing = testing::runCommand(kTool + "/nonexistent.yaml");
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.output, HasSubstr("/nonexistent.yaml: cannot be read"));
+}
+
+TEST(ContrastFromBiasTool, ExplainsItself) {
+  const auto help = testing::runCommand(kTool + "--help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.output, HasSubstr("Usage: contrast_from_bias FILE.yaml"));
+  EXPECT_EQ(testing::runCommand(kTool).exit_code, 2);
+  EXPECT_EQ(testing::runCommand(kTool + "--nonsense x").exit_code, 2);
+}
+
+}  // namespace
+}  // namespace fast_edi
