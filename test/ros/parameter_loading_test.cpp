@@ -1,0 +1,52 @@
+#include "fast_edi/ros/parameter_loading.hpp"
+
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "fast_edi/config/parameters_from_yaml.hpp"
+
+namespace fast_edi {
+namespace {
+
+TEST(YamlFromXmlRpc, KeepsTypesAndNesting) {
+  XmlRpc::XmlRpcValue value;
+  value["flag"] = true;
+  value["count"] = -3;
+  value["text"] = "jaer_xml";
+  value["biases"]["DiffBn_coarse"] = 4;
+  value["list"][0] = 1;
+  value["list"][1] = "two";
+  const YAML::Node yaml = yamlFromXmlRpc(value);
+  ASSERT_TRUE(yaml.IsMap());
+  EXPECT_TRUE(yaml["flag"].as<bool>());
+  EXPECT_EQ(yaml["count"].as<int>(), -3);
+  EXPECT_EQ(yaml["text"].as<std::string>(), "jaer_xml");
+  EXPECT_EQ(yaml["biases"]["DiffBn_coarse"].as<int>(), 4);
+  EXPECT_EQ(yaml["list"].size(), 2u);
+  EXPECT_EQ(yaml["list"][1].as<std::string>(), "two");
+}
+
+TEST(YamlFromXmlRpc, KeepsEveryBitOfNumbers) {
+  for (const double number : {0.1, 1.0 / 3.0, 130.0 / 6.0, 6.02214076e23, 1e-300}) {
+    XmlRpc::XmlRpcValue value;
+    value["x"] = number;
+    EXPECT_EQ(yamlFromXmlRpc(value)["x"].as<double>(), number);
+  }
+}
+
+TEST(YamlFromXmlRpc, RefusesWhatNoParameterIs) {
+  XmlRpc::XmlRpcValue value;
+  char bytes[] = {1, 2, 3};
+  value["biases"]["blob"] = XmlRpc::XmlRpcValue(bytes, 3);
+  try {
+    yamlFromXmlRpc(value);
+    FAIL() << "binary data was accepted";
+  } catch (const ParameterError& error) {
+    EXPECT_NE(std::string(error.what()).find("parameters/biases/blob"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace fast_edi
