@@ -77,15 +77,15 @@ void drawCaption(cv::Mat area, const std::string& caption) {
 
 cv::Mat drawSheet(const Sheet& sheet) {
   const cv::Size largest = largestPanel(sheet);
-  const int magnification =
-      std::max(1, (kMinPanelWidth_px + largest.width - 1) / largest.width);
+  const int magnification = std::max(1, (kMinPanelWidth_px + largest.width - 1) / largest.width);
   const cv::Size panel_size = largest * magnification;
   const int columns = static_cast<int>(sheet.columns.size());
   const int rows = static_cast<int>(sheet.rows.size());
   const int row_height = kLabelHeight + panel_size.height + kGap;
   cv::Mat picture(kMargin + kTitleHeight + kHeadingHeight + rows * row_height + kMargin,
                   2 * kMargin + columns * panel_size.width + (columns - 1) * kGap, CV_8UC3, kPaper);
-  write(picture, sheet.title, kMargin, kMargin + kTitleHeight - kBaseline - kGap, kTitleScale, kInk);
+  write(picture, sheet.title, kMargin, kMargin + kTitleHeight - kBaseline - kGap, kTitleScale,
+        kInk);
   const auto left = [&](int column) { return kMargin + column * (panel_size.width + kGap); };
   const int heading_bottom = kMargin + kTitleHeight + kHeadingHeight;
   for (int column = 0; column < columns; ++column) {

@@ -40,6 +40,14 @@ double Evaluation::maxRuntimeMs(Method method) const {
   return values.empty() ? 0.0 : values.back();
 }
 
+double Evaluation::meanSearchedContrast() const {
+  double sum = 0.0;
+  for (const FrameFigures& frame : frames) {
+    sum += frame.searched_contrast;
+  }
+  return frames.empty() ? 0.0 : sum / static_cast<double>(frames.size());
+}
+
 std::optional<double> meanOver(const std::vector<const Evaluation*>& evaluations, Method method,
                                Measure measure) {
   double sum = 0.0;

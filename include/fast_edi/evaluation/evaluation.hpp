@@ -40,6 +40,7 @@ struct Evaluation {
   std::optional<double> mean(Method method, Measure measure) const;
   double medianRuntimeMs(Method method) const;
   double maxRuntimeMs(Method method) const;
+  double meanSearchedContrast() const;  ///< [natural log]
 };
 
 /// Mean of the evaluations' means, each counting the same.

@@ -1,0 +1,461 @@
+/// \file
+/// `evaluate`: blurry input, plain EDI, the paper's counter EDI, EDI with searched contrast and
+/// this package's own output, measured on a recording or on the fixed set of simulated sequences.
+
+#include <exception>
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+#include <list>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <cv_bridge/cv_bridge.h>
+#include <ros/serialization.h>
+#include <sensor_msgs/Image.h>
+#include <sensor_msgs/image_encodings.h>
+#include <std_msgs/Int32.h>
+#include <yaml-cpp/yaml.h>
+#include <boost/program_options.hpp>
+#include <opencv2/core/utility.hpp>
+
+#include "fast_edi/config/parameters_from_yaml.hpp"
+#include "fast_edi/evaluation/evaluation.hpp"
+#include "fast_edi/evaluation/report.hpp"
+#include "fast_edi/evaluation/sequences.hpp"
+#include "fast_edi/ros/bag_error.hpp"
+#include "fast_edi/ros/bag_reader.hpp"
+#include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/ros/message_conversion.hpp"
+#include "fast_edi/ros/progress_bar.hpp"
+#include "fast_edi/ros/topic_names.hpp"
+
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kInputIncomplete = 2;
+
+struct Arguments {
+  std::string bag;
+  std::string config;
+  std::string output;
+  std::string command;
+  fast_edi::TopicNames topics;
+  std::string truth_topic;
+  fast_edi::ScorerOptions scorer;
+  fast_edi::ContrastSearchOptions search;
+  std::vector<std::string> positional;
+  std::vector<std::string> overrides;
+  bool sequences = false;
+  int frames = fast_edi::kSequenceFrames;
+  int seeds = fast_edi::kSequenceSeeds;
+  double threshold_factor = 1.0;
+};
+
+po::options_description describeOptions(Arguments& arguments) {
+  fast_edi::TopicNames& topics = arguments.topics;
+  fast_edi::ScorerOptions& scorer = arguments.scorer;
+  po::options_description options("Options");
+  auto add = options.add_options();
+  const auto text = [](std::string& target, const char* name) {
+    return po::value(&target)->default_value(target)->value_name(name);
+  };
+  add("help,h", "print this");
+  add("output,o", text(arguments.output, "FOLDER"), "where report.md, figures.csv and pictures go");
+  add("config", po::value(&arguments.config)->value_name("YAML"),
+      "parameters of the package's own output, e.g. cfg/davis346.yaml; not needed with --sequences "
+      "or when both contrast thresholds are given as name:=value");
+  add("sseq-model", text(scorer.sseq_folder, "FOLDER"),
+      "SSEQ model: class.libsvm, regression_1..5.libsvm, feature_range.txt; without it no SSEQ");
+  add("brisque-model", text(scorer.brisque_model_file, "FILE"), "BRISQUE model");
+  add("brisque-range", text(scorer.brisque_range_file, "FILE"), "BRISQUE feature ranges");
+  add("full-reference-only", po::bool_switch(&scorer.full_reference_only),
+      "PSNR and SSIM alone: fast");
+  add("search-low", po::value(&arguments.search.low)->default_value(arguments.search.low),
+      "searched contrast: smallest threshold [natural log]");
+  add("search-high", po::value(&arguments.search.high)->default_value(arguments.search.high),
+      "searched contrast: largest threshold [natural log]");
+
+  po::options_description recording("Recordings");
+  auto add_recording = recording.add_options();
+  add_recording("events", text(topics.events, "TOPIC"), "event arrays");
+  add_recording("image", text(topics.image, "TOPIC"), "frames");
+  add_recording("exposure", text(topics.exposure, "TOPIC"),
+                "exposure lengths [us]; may be missing");
+  add_recording("truth", text(arguments.truth_topic, "TOPIC"),
+                "true sharp frames, stamped mid-exposure; may be missing");
+
+  po::options_description simulated("Simulated sequences");
+  auto add_simulated = simulated.add_options();
+  add_simulated("sequences", po::bool_switch(&arguments.sequences),
+                "evaluate the fixed set of simulated sequences instead of a recording");
+  add_simulated("frames", po::value(&arguments.frames)->default_value(arguments.frames),
+                "frames of each sequence");
+  add_simulated("seeds", po::value(&arguments.seeds)->default_value(arguments.seeds),
+                "seeds of each scene, from 1");
+  add_simulated("threshold-factor",
+                po::value(&arguments.threshold_factor)->default_value(arguments.threshold_factor),
+                "all methods get the true mean thresholds times this");
+  options.add(recording).add(simulated);
+  return options;
+}
+
+void printHelp(const po::options_description& options) {
+  std::cout
+      << "Usage: evaluate BAG [options] [parameter:=value ...]\n"
+         "       evaluate --sequences [options] [parameter:=value ...]\n\n"
+         "Compares the blurry input, plain EDI, counter EDI, EDI with the contrast found by\n"
+         "sharpness, and the package's own output: table on standard output, report with\n"
+         "pictures in a folder. Parameters given as name:=value come before the YAML file's.\n"
+         "Latent images are taken at mid-exposure. Colour is turned to grey first; raw Bayer\n"
+         "frames are measured as they are.\n\n"
+      << options << "\nExit code: 0 done; 1 failed; 2 the recording was cut short or damaged.\n";
+}
+
+bool isOverride(const std::string& argument) {
+  return argument.find(":=") != std::string::npos;
+}
+
+/// \return false when help was asked for and given
+bool parseArguments(int argc, char** argv, Arguments& arguments) {
+  arguments.output = "evaluation";
+  arguments.truth_topic = "/dvs/ground_truth/image_raw";
+  const po::options_description visible = describeOptions(arguments);
+  po::options_description all;
+  all.add(visible).add_options()("argument", po::value(&arguments.positional));
+  po::positional_options_description positional;
+  positional.add("argument", -1);
+  po::variables_map values;
+  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  if (argc == 1 || values.count("help") > 0) {
+    printHelp(visible);
+    return false;
+  }
+  po::notify(values);
+  for (const std::string& argument : arguments.positional) {
+    if (isOverride(argument)) {
+      arguments.overrides.push_back(argument);
+    } else if (arguments.bag.empty()) {
+      arguments.bag = argument;
+    } else {
+      throw po::error("one recording at a time, got " + arguments.bag + " and " + argument);
+    }
+  }
+  if (arguments.sequences != arguments.bag.empty()) {
+    throw po::error("expected either a BAG or --sequences");
+  }
+  if (!(arguments.threshold_factor > 0.0)) {
+    throw po::error("--threshold-factor: expected a number above 0");
+  }
+  arguments.command = "rosrun fast_edi evaluate";
+  for (int i = 1; i < argc; ++i) {
+    arguments.command += std::string(" ") + argv[i];
+  }
+  return true;
+}
+
+fast_edi::LoadedParameters loadParameters(const Arguments& arguments) {
+  YAML::Node root(YAML::NodeType::Map);
+  if (!arguments.config.empty()) {
+    try {
+      root = YAML::LoadFile(arguments.config);
+    } catch (const YAML::Exception& error) {
+      throw fast_edi::ParameterError(arguments.config + ": " + error.what());
+    }
+  }
+  fast_edi::applyOverrides(root, arguments.overrides);
+  if (arguments.sequences) {
+    // The simulated sensor's own thresholds replace these, see evaluateSequence().
+    const fast_edi::SensorSettings sensor;
+    if (!root["contrast_threshold_on"]) {
+      root["contrast_threshold_on"] = sensor.thresholds.on;
+    }
+    if (!root["contrast_threshold_off"]) {
+      root["contrast_threshold_off"] = sensor.thresholds.off;
+    }
+  }
+  return fast_edi::parametersFromYaml(
+      root, std::filesystem::path(arguments.config).parent_path().string());
+}
+
+/// \throws ros::serialization::StreamOverrunException
+template <typename Message>
+void deserialize(const fast_edi::BagMessage& raw, Message& message) {
+  ros::serialization::IStream stream(const_cast<std::uint8_t*>(raw.data), raw.size);
+  ros::serialization::deserialize(stream, message);
+}
+
+/// As above, but refuses a stated length of pixels beyond the message before memory is taken for
+/// it. \throws ros::serialization::StreamOverrunException
+void deserialize(const fast_edi::BagMessage& raw, sensor_msgs::Image& image) {
+  ros::serialization::IStream stream(const_cast<std::uint8_t*>(raw.data), raw.size);
+  ros::serialization::IStream ahead = stream;
+  ahead.next(image.header);
+  ahead.next(image.height);
+  ahead.next(image.width);
+  ahead.next(image.encoding);
+  ahead.next(image.is_bigendian);
+  ahead.next(image.step);
+  std::uint32_t bytes = 0;
+  ahead.next(bytes);
+  if (bytes > ahead.getLength()) {
+    ros::serialization::throwStreamOverrun();
+  }
+  ros::serialization::deserialize(stream, image);
+}
+
+/// What the evaluation works on: one channel of 8 bits. Empty when the encoding is not deblurred.
+cv::Mat toMono8(const sensor_msgs::Image& message) {
+  namespace encodings = sensor_msgs::image_encodings;
+  const fast_edi::ImageReading reading = fast_edi::readImage(message);
+  if (reading.verdict != fast_edi::ImageVerdict::kSupported) {
+    return {};
+  }
+  const cv_bridge::CvImagePtr raw = cv_bridge::toCvCopy(message);
+  switch (reading.view.format) {
+    case fast_edi::PixelFormat::kMono8:
+      return raw->image;
+    case fast_edi::PixelFormat::kMono16: {
+      constexpr double kTo8Bits = 1.0 / 257.0;
+      cv::Mat image;
+      raw->image.convertTo(image, CV_8U, kTo8Bits);
+      return image;
+    }
+    case fast_edi::PixelFormat::kColor8:
+      return cv_bridge::cvtColor(raw, encodings::MONO8)->image;
+  }
+  return {};
+}
+
+/// True frames by stamp, read before everything else: a truth may be recorded after its frame.
+class TruthFrames {
+ public:
+  TruthFrames(const std::string& bag, const std::string& topic) {
+    fast_edi::BagReader reader(bag);
+    fast_edi::BagMessage message;
+    while (reader.next(message)) {
+      if (message.connection->topic != topic) {
+        continue;
+      }
+      try {
+        sensor_msgs::Image image;
+        deserialize(message, image);
+        frames_[static_cast<std::int64_t>(image.header.stamp.toNSec())] = toMono8(image);
+      } catch (const ros::serialization::StreamOverrunException&) {
+        ++malformed_;
+      }
+    }
+  }
+
+  cv::Mat at(std::int64_t stamp_ns) const {
+    // A driver's stamp is mid-exposure rounded down to 1 us.
+    constexpr std::int64_t kToleranceNs = fast_edi::kNanosecondsPerMicrosecond;
+    const auto after = frames_.lower_bound(stamp_ns - kToleranceNs);
+    return after != frames_.end() && after->first <= stamp_ns + kToleranceNs ? after->second
+                                                                             : cv::Mat();
+  }
+  std::size_t size() const { return frames_.size(); }
+  std::uint64_t malformed() const { return malformed_; }
+
+ private:
+  std::map<std::int64_t, cv::Mat> frames_;
+  std::uint64_t malformed_ = 0;
+};
+
+/// \return false for a message that contradicts itself
+bool feed(const fast_edi::BagMessage& message, const fast_edi::TopicNames& topics,
+          fast_edi::MethodComparison& comparison) {
+  const auto now_ns = static_cast<std::int64_t>(message.time.toNSec());
+  const std::string& topic = message.connection->topic;
+  comparison.advance(now_ns);
+  try {
+    if (topic == topics.events) {
+      fast_edi::EventArrayView array;
+      deserialize(message, array);
+      comparison.addEvents(array.events(), fast_edi::sensorSize(array), array.header.seq, now_ns);
+    } else if (topic == topics.image) {
+      sensor_msgs::Image image;
+      deserialize(message, image);
+      if (fast_edi::readImage(image).verdict == fast_edi::ImageVerdict::kMalformed) {
+        return false;
+      }
+      comparison.addFrame(static_cast<std::int64_t>(image.header.stamp.toNSec()), toMono8(image),
+                          now_ns);
+    } else if (topic == topics.exposure) {
+      std_msgs::Int32 exposure;
+      deserialize(message, exposure);
+      comparison.addExposure(exposure.data, now_ns);
+    }
+  } catch (const ros::serialization::StreamOverrunException&) {
+    return false;
+  }
+  return true;
+}
+
+std::vector<std::string> notesOf(const fast_edi::FrameScorer& scorer) {
+  std::vector<std::string> notes;
+  for (const std::string& missing : scorer.missing()) {
+    notes.push_back("Not measured: " + missing);
+  }
+  return notes;
+}
+
+void printGroups(const std::vector<fast_edi::EvaluationGroup>& groups,
+                 const std::vector<std::string>& notes) {
+  fast_edi::EvaluationGroup all{"all", {}};
+  for (const fast_edi::EvaluationGroup& group : groups) {
+    std::cout << group.name << "\n\n";
+    if (group.members.size() > 1) {
+      for (const fast_edi::Measure measure : {fast_edi::Measure::kPsnr, fast_edi::Measure::kSsim}) {
+        std::cout << fast_edi::describe(measure).name << "\n";
+        fast_edi::printMemberTable(std::cout, group, measure);
+        std::cout << "\n";
+      }
+    }
+    fast_edi::printMeasureTable(std::cout, group);
+    std::cout << "\n";
+    all.members.insert(all.members.end(), group.members.begin(), group.members.end());
+  }
+  fast_edi::printRuntimeTable(std::cout, all);
+  std::cout << "\n";
+  for (const std::string& note : notes) {
+    std::cout << note << "\n";
+  }
+}
+
+std::string decimal(double value) {
+  std::ostringstream text;
+  text << std::setprecision(4) << value;
+  return text.str();
+}
+
+int evaluateBag(const Arguments& arguments, const fast_edi::DeblurParameters& parameters) {
+  fast_edi::BagReader reader(arguments.bag);
+  const std::string faults = fast_edi::checkTopics(arguments.topics, reader.connections());
+  if (!faults.empty()) {
+    throw fast_edi::BagError(arguments.bag + ": " + faults);
+  }
+  const TruthFrames truth(arguments.bag, arguments.truth_topic);
+  const fast_edi::FrameScorer scorer(arguments.scorer);
+  fast_edi::EvaluationRecorder recorder(
+      std::filesystem::path(arguments.bag).filename().string(), scorer,
+      [&truth](std::int64_t stamp_ns) { return truth.at(stamp_ns); });
+  fast_edi::MethodComparison comparison(
+      parameters, arguments.search,
+      [&recorder](const fast_edi::ComparedFrame& frame) { recorder.add(frame); });
+  std::uint64_t malformed = truth.malformed();
+  {
+    fast_edi::ProgressBar bar("evaluating");
+    fast_edi::BagMessage message;
+    while (reader.next(message)) {
+      malformed += feed(message, arguments.topics, comparison) ? 0 : 1;
+      bar.update(reader.position(), reader.messageCount());
+    }
+    comparison.finish();
+  }
+
+  const fast_edi::Evaluation& evaluation = recorder.evaluation();
+  std::vector<std::string> notes = notesOf(scorer);
+  notes.push_back("Contrast thresholds: ON " + decimal(parameters.thresholds.on) + ", OFF " +
+                  decimal(parameters.thresholds.off) +
+                  "; searched: " + decimal(evaluation.meanSearchedContrast()) + " in the mean");
+  if (truth.size() == 0) {
+    notes.push_back("No true frames on " + arguments.truth_topic + ": no PSNR, no SSIM");
+  }
+  for (const auto& [reason, count] : evaluation.left_out) {
+    notes.push_back(std::to_string(count) + " frames left out: " + reason);
+  }
+  if (evaluation.frames.empty()) {
+    throw std::runtime_error(arguments.bag + ": no frame could be deblurred" +
+                             (evaluation.left_out.empty()
+                                  ? std::string()
+                                  : " (" + evaluation.left_out.begin()->first + ")"));
+  }
+  const std::vector<fast_edi::EvaluationGroup> groups = {{evaluation.name, {&evaluation}}};
+  printGroups(groups, notes);
+  std::cout << "written: "
+            << fast_edi::writeReport(arguments.output,
+                                     {"Evaluation of " + evaluation.name, arguments.command, notes},
+                                     groups)
+            << "\n";
+  for (const fast_edi::BagDamage& damage : reader.damage()) {
+    std::cerr << "warning: " << arguments.bag << ", byte " << damage.offset << ": " << damage.what
+              << "\n";
+  }
+  if (malformed > 0) {
+    std::cerr << "warning: " << malformed << " messages contradict themselves and were not used\n";
+  }
+  return reader.damage().empty() && malformed == 0 ? kDone : kInputIncomplete;
+}
+
+int evaluateSequences(const Arguments& arguments, const fast_edi::DeblurParameters& parameters) {
+  const std::vector<fast_edi::EvaluationSequence> sequences =
+      fast_edi::evaluationSequences(arguments.frames, arguments.seeds);
+  const fast_edi::FrameScorer scorer(arguments.scorer);
+  std::list<fast_edi::Evaluation> evaluations;
+  std::vector<fast_edi::EvaluationGroup> groups = {{"sequences for tuning", {}},
+                                                   {"sequences not tuned on", {}}};
+  {
+    fast_edi::ProgressBar bar("evaluating");
+    const std::uint64_t total = sequences.size() * static_cast<std::uint64_t>(arguments.frames);
+    std::uint64_t done_before = 0;
+    for (const fast_edi::EvaluationSequence& sequence : sequences) {
+      evaluations.push_back(fast_edi::evaluateSequence(
+          sequence, parameters, arguments.threshold_factor, arguments.search, scorer,
+          [&](int frames) {
+            bar.update(done_before + static_cast<std::uint64_t>(frames), total);
+          }));
+      groups[sequence.for_tuning ? 0 : 1].members.push_back(&evaluations.back());
+      done_before += static_cast<std::uint64_t>(arguments.frames);
+    }
+  }
+  std::vector<std::string> notes = notesOf(scorer);
+  for (const fast_edi::Evaluation& evaluation : evaluations) {
+    for (const auto& [reason, count] : evaluation.left_out) {
+      notes.push_back(evaluation.name + ": " + std::to_string(count) +
+                      " frames left out: " + reason);
+    }
+  }
+  if (arguments.threshold_factor != 1.0) {
+    notes.push_back("All methods got the true mean thresholds times " +
+                    decimal(arguments.threshold_factor));
+  }
+  printGroups(groups, notes);
+  std::cout << "written: "
+            << fast_edi::writeReport(
+                   arguments.output,
+                   {"Evaluation on simulated sequences", arguments.command, notes}, groups)
+            << "\n";
+  return kDone;
+}
+
+int run(const Arguments& arguments) {
+  const fast_edi::LoadedParameters parameters = loadParameters(arguments);
+  for (const std::string& warning : parameters.warnings) {
+    std::cerr << "warning: " << warning << "\n";
+  }
+  // Run times are those of one thread; results do not depend on how many cores there are.
+  cv::setNumThreads(1);
+  return arguments.sequences ? evaluateSequences(arguments, parameters.deblur)
+                             : evaluateBag(arguments, parameters.deblur);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    Arguments arguments;
+    return parseArguments(argc, argv, arguments) ? run(arguments) : kDone;
+  } catch (const po::error& error) {
+    std::cerr << "evaluate: " << error.what() << " (see --help)\n";
+  } catch (const std::exception& error) {
+    std::cerr << "evaluate: " << error.what() << "\n";
+  }
+  return kFailed;
+}
