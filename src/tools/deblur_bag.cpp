@@ -2,7 +2,6 @@
 /// `deblur_bag`: a recording in, the same recording with deblurred frames out.
 
 #include <exception>
-#include <filesystem>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -97,20 +96,12 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
 }
 
 fast_edi::LoadedParameters loadParameters(const Arguments& arguments) {
-  if (arguments.overrides.empty() && !arguments.config.empty()) {
-    return fast_edi::parametersFromFile(arguments.config);
+  if (!arguments.config.empty()) {
+    return fast_edi::parametersFromFile(arguments.config, arguments.overrides);
   }
   YAML::Node root(YAML::NodeType::Map);
-  if (!arguments.config.empty()) {
-    try {
-      root = YAML::LoadFile(arguments.config);
-    } catch (const YAML::Exception& error) {
-      throw fast_edi::ParameterError(arguments.config + ": " + error.what());
-    }
-  }
   fast_edi::applyOverrides(root, arguments.overrides);
-  return fast_edi::parametersFromYaml(
-      root, std::filesystem::path(arguments.config).parent_path().string());
+  return fast_edi::parametersFromYaml(root, ".");
 }
 
 void printDamage(const fast_edi::BagReader& reader, const fast_edi::BagDeblurReport& report,

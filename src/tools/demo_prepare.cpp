@@ -1,0 +1,121 @@
+/// \file
+/// `demo_prepare`: looks at a recording and its parameters before `launch/demo` plays it, and says
+/// how the launch file is to be called.
+
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+#include <boost/program_options.hpp>
+
+#include "fast_edi/config/parameters_from_yaml.hpp"
+#include "fast_edi/ros/bag_error.hpp"
+#include "fast_edi/ros/bag_reader.hpp"
+#include "fast_edi/ros/topic_names.hpp"
+
+namespace {
+
+namespace po = boost::program_options;
+
+struct Arguments {
+  std::string bag;
+  std::string config;
+  std::string overrides_file;
+  fast_edi::TopicNames topics;
+  std::vector<std::string> overrides;
+};
+
+/// \return false when help was asked for and given
+bool parseArguments(int argc, char** argv, Arguments& arguments) {
+  fast_edi::TopicNames& topics = arguments.topics;
+  po::options_description visible("Options");
+  visible.add_options()("help,h", "print this")("in", po::value(&arguments.bag)->required(),
+                                                "recording")(
+      "config", po::value(&arguments.config)->required(), "YAML file with the parameters")(
+      "overrides-out", po::value(&arguments.overrides_file)->required(),
+      "YAML file to write the given parameters to, for roslaunch")(
+      "events", po::value(&topics.events)->default_value(topics.events))(
+      "image", po::value(&topics.image)->default_value(topics.image))(
+      "exposure", po::value(&topics.exposure)->default_value(topics.exposure))(
+      "camera-info", po::value(&topics.camera_info));
+  po::options_description all;
+  all.add(visible).add_options()("override", po::value(&arguments.overrides));
+  po::positional_options_description positional;
+  positional.add("override", -1);
+  po::variables_map values;
+  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  if (values.count("help") > 0) {
+    std::cout << "Usage: demo_prepare --in BAG --config YAML --overrides-out YAML [options] "
+                 "[parameter:=value ...]\n\n"
+                 "Checks a recording and parameters, finds the topics where they have other names "
+                 "than the\ndriver's, and prints launch/demo.launch's arguments, one on each "
+                 "line.\n\n"
+              << visible;
+    return false;
+  }
+  po::notify(values);
+  return true;
+}
+
+void writeOverrides(const Arguments& arguments) {
+  YAML::Node root(YAML::NodeType::Map);
+  fast_edi::applyOverrides(root, arguments.overrides);
+  std::ofstream file(arguments.overrides_file);
+  file << root << "\n";
+  if (!file.flush()) {
+    throw std::runtime_error("cannot write " + arguments.overrides_file);
+  }
+}
+
+void run(const Arguments& arguments) {
+  const fast_edi::LoadedParameters parameters =
+      fast_edi::parametersFromFile(arguments.config, arguments.overrides);
+  for (const std::string& warning : parameters.warnings) {
+    std::cerr << "warning: " << warning << "\n";
+  }
+  const fast_edi::BagReader reader(arguments.bag);
+  if (!reader.damage().empty()) {
+    throw fast_edi::BagError(arguments.bag + " is cut short or damaged (at byte " +
+                             std::to_string(reader.damage().front().offset) + ": " +
+                             reader.damage().front().what +
+                             "); rosbag cannot play it, deblur_bag can read it");
+  }
+  const fast_edi::TopicNames topics = fast_edi::guessTopics(arguments.topics, reader.connections());
+  const std::string faults = fast_edi::checkTopics(topics, reader.connections());
+  if (!faults.empty()) {
+    throw fast_edi::BagError(arguments.bag + ": " + faults);
+  }
+  writeOverrides(arguments);
+  std::set<std::string> recorded;
+  for (const auto& entry : reader.connections()) {
+    recorded.insert(entry.second.topic);
+  }
+  std::cout << "events:=" << topics.events << "\n"
+            << "image:=" << topics.image << "\n"
+            << "exposure:=" << topics.exposure << "\n"
+            << "camera_info:=" << topics.cameraInfo() << "\n"
+            << "topics:=" << topics.outputImage() << " " << topics.outputCameraInfo();
+  for (const std::string& topic : recorded) {
+    std::cout << " " << topic;
+  }
+  std::cout << "\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    Arguments arguments;
+    if (parseArguments(argc, argv, arguments)) {
+      run(arguments);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "demo_prepare: " << error.what() << "\n";
+    return 1;
+  }
+}

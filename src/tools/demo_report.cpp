@@ -1,0 +1,486 @@
+/// \file
+/// `demo_report`: what a recording with live deblurred frames shows, as a picture and as figures.
+///
+/// The recording goes through the pipeline once more. That gives each frame's exposure and events,
+/// and checks that what was published live is what comes out offline.
+
+#include <algorithm>
+#include <deque>
+#include <exception>
+#include <iomanip>
+#include <iostream>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <cv_bridge/cv_bridge.h>
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <ros/serialization.h>
+#include <sensor_msgs/image_encodings.h>
+#include <boost/make_shared.hpp>
+#include <boost/program_options.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "fast_edi/config/parameters_from_yaml.hpp"
+#include "fast_edi/evaluation/comparison_sheet.hpp"
+#include "fast_edi/evaluation/image_metrics.hpp"
+#include "fast_edi/evaluation/tag_count.hpp"
+#include "fast_edi/ros/bag_pipeline.hpp"
+#include "fast_edi/ros/bag_reader.hpp"
+#include "fast_edi/ros/comparison_view.hpp"
+#include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/ros/topic_names.hpp"
+
+namespace fast_edi {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr std::size_t kSheetRows = 4;
+/// A frame is settled once this many more have come: by then its output and truth are there too.
+constexpr std::size_t kSettleAfterFrames = 16;
+constexpr double kNanosecondsInMillisecond = 1e6;
+constexpr double kNoticeableGain = 1.05;
+
+struct Arguments {
+  std::string bag;
+  std::string config;
+  std::string picture;
+  std::string truth = "/dvs/ground_truth/image_raw";
+  std::string name;
+  TopicNames topics;
+  std::vector<std::string> overrides;
+};
+
+/// A frame before, after, or as it truly was.
+struct View {
+  cv::Mat mono8;
+  double sharpness = 0.0;
+  std::size_t tags = 0;
+  std::optional<double> psnr_db;  ///< against the truth
+};
+
+/// Sums over the frames that have a view.
+struct ViewTotals {
+  std::size_t frames = 0;
+  double sharpness = 0.0;
+  std::size_t tags = 0;
+  std::size_t frames_with_psnr = 0;
+  double psnr_db = 0.0;
+
+  void add(const View& view) {
+    ++frames;
+    sharpness += view.sharpness;
+    tags += view.tags;
+    if (view.psnr_db) {
+      ++frames_with_psnr;
+      psnr_db += *view.psnr_db;
+    }
+  }
+};
+
+struct LiveImage {
+  sensor_msgs::ImageConstPtr message;
+  ros::Time record_time;
+};
+
+struct PendingFrame {
+  BagPipeline::Output offline;
+  cv::Mat events;  ///< drawn, for the frames that go on the sheet
+  std::size_t number = 0;
+  bool on_sheet = false;
+};
+
+template <typename Message>
+boost::shared_ptr<Message> deserialise(const BagMessage& raw) {
+  const auto message = boost::make_shared<Message>();
+  ros::serialization::IStream stream(const_cast<std::uint8_t*>(raw.data), raw.size);
+  stream.next(*message);
+  return message;
+}
+
+cv::Mat toMono8(const sensor_msgs::Image& message) {
+  // cv_bridge takes 8UC1 for a matrix without colour, which here it is not.
+  sensor_msgs::Image image = message;
+  if (image.encoding == sensor_msgs::image_encodings::TYPE_8UC1) {
+    image.encoding = sensor_msgs::image_encodings::MONO8;
+  }
+  return cv_bridge::toCvCopy(image, sensor_msgs::image_encodings::MONO8)->image;
+}
+
+double milliseconds(std::int64_t duration_ns) {
+  return static_cast<double>(duration_ns) / kNanosecondsInMillisecond;
+}
+
+std::string text(double value, int digits) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(digits) << value;
+  return out.str();
+}
+
+/// Collects frames, figures and the rows of the sheet from a recording.
+class Report {
+ public:
+  Report(const Arguments& arguments, const LoadedParameters& parameters, const BagReader& reader)
+      : arguments_(arguments),
+        topics_(arguments.topics),
+        output_topic_(topics_.outputImage()),
+        time_offset_ns_(parameters.deblur.time_offset_ns),
+        pipeline_(topics_, parameters) {
+    for (const auto& entry : reader.connections()) {
+      frames_expected_ += entry.second.topic == topics_.image ? entry.second.messages : 0;
+    }
+  }
+
+  void add(const BagMessage& message) {
+    const std::string& topic = message.connection->topic;
+    if (topic == topics_.events) {
+      addEvents(message);
+    } else if (topic == output_topic_) {
+      const auto image = deserialise<sensor_msgs::Image>(message);
+      live_[image->header.stamp] = {image, message.time};
+      ++frames_out_;
+    } else if (topic == arguments_.truth) {
+      const auto image = deserialise<sensor_msgs::Image>(message);
+      truth_[image->header.stamp] = image;
+    } else if (topic == "/diagnostics") {
+      addDiagnostics(*deserialise<diagnostic_msgs::DiagnosticArray>(message));
+    }
+    pipeline_.add(message);
+    takeOutputs();
+    while (pending_.size() > kSettleAfterFrames) {
+      settleOldest();
+    }
+  }
+
+  void finish() {
+    pipeline_.finish();
+    takeOutputs();
+    while (!pending_.empty()) {
+      settleOldest();
+    }
+  }
+
+  bool hasOutput() const { return frames_out_ > 0; }
+  bool lostFrames() const { return frames_lost_ > 0; }
+
+  void print(std::ostream& out) const;
+  cv::Mat draw() const;
+
+ private:
+  void addEvents(const BagMessage& message) {
+    const auto array = deserialise<EventArrayView>(message);
+    const WireEvents events = array->events();
+    view_.addEvents(events);
+    if (events.empty()) {
+      return;
+    }
+    first_event_ns_ = first_event_ns_.value_or(decodeWireEvent(events.record(0)).t_ns);
+    last_event_ns_ = decodeWireEvent(events.record(events.count - 1)).t_ns;
+  }
+
+  void addDiagnostics(const diagnostic_msgs::DiagnosticArray& array) {
+    for (const auto& status : array.status) {
+      for (const auto& value : status.values) {
+        diagnostics_[value.key] = value.value;
+      }
+    }
+  }
+
+  void takeOutputs() {
+    for (BagPipeline::Output& output : pipeline_.takeOutputs()) {
+      PendingFrame frame;
+      frame.number = frames_seen_++;
+      // Rows from the middles of equal parts of the recording.
+      const std::size_t row = rows_chosen_;
+      frame.on_sheet =
+          row < kSheetRows && frame.number >= (2 * row + 1) * frames_expected_ / (2 * kSheetRows);
+      if (frame.on_sheet) {
+        ++rows_chosen_;
+        frame.events = drawEvents(output);
+      }
+      frame.offline = std::move(output);
+      pending_.push_back(std::move(frame));
+    }
+  }
+
+  cv::Mat drawEvents(const BagPipeline::Output& output) const {
+    if (!output.frame.input.supported || output.frame.exposure.length() == 0) {
+      return {};
+    }
+    const ExposureInterval window{output.frame.exposure.start_ns + time_offset_ns_,
+                                  output.frame.exposure.end_ns + time_offset_ns_};
+    const sensor_msgs::Image& input = *messageFrame(output.frame.input).message;
+    const cv::Mat panels =
+        cv_bridge::toCvCopy(view_.draw(input, *output.image, window), "bgr8")->image;
+    const int width = panels.cols / 3;
+    return panels.colRange(width, 2 * width).clone();
+  }
+
+  void settleOldest();
+  View look(const cv::Mat& mono8, const cv::Mat& truth) const;
+  cv::Mat truthAt(const ros::Time& stamp) const;
+  void addRow(const PendingFrame& frame, const View& before, const View& after, const View& truth);
+
+  const Arguments& arguments_;
+  const TopicNames& topics_;
+  const std::string output_topic_;
+  const std::int64_t time_offset_ns_;
+  BagPipeline pipeline_;
+  ComparisonView view_;
+  TagDetector detector_;
+
+  std::deque<PendingFrame> pending_;
+  std::map<ros::Time, LiveImage> live_;
+  std::map<ros::Time, sensor_msgs::ImageConstPtr> truth_;
+  std::map<std::string, std::string> diagnostics_;
+
+  std::uint64_t frames_expected_ = 0;
+  std::size_t frames_seen_ = 0;
+  std::size_t frames_out_ = 0;
+  std::size_t frames_lost_ = 0;
+  std::size_t frames_as_offline_ = 0;
+  std::size_t rows_chosen_ = 0;
+  std::optional<std::int64_t> first_event_ns_;
+  std::int64_t last_event_ns_ = 0;
+  std::vector<double> latencies_ms_;
+  ViewTotals before_;
+  ViewTotals after_;
+  ViewTotals true_;
+  std::vector<SheetRow> rows_;
+  double gain_ = kMaxDisplayGain;
+};
+
+View Report::look(const cv::Mat& mono8, const cv::Mat& truth) const {
+  View view;
+  view.mono8 = mono8;
+  view.sharpness = sharpness(mono8).tenengrad_above_noise;
+  view.tags = detector_.detect(mono8).size();
+  if (!truth.empty() && truth.size() == mono8.size()) {
+    view.psnr_db = psnr(mono8, truth);
+  }
+  return view;
+}
+
+cv::Mat Report::truthAt(const ros::Time& stamp) const {
+  const auto found = truth_.find(stamp);
+  return found == truth_.end() ? cv::Mat() : toMono8(*found->second);
+}
+
+void Report::settleOldest() {
+  const PendingFrame frame = std::move(pending_.front());
+  pending_.pop_front();
+  const ros::Time stamp = frame.offline.image->header.stamp;
+  const MessageFrame& input = messageFrame(frame.offline.frame.input);
+  const auto live = live_.find(stamp);
+  if (live == live_.end()) {
+    ++frames_lost_;
+  } else {
+    frames_as_offline_ += live->second.message->data == frame.offline.image->data ? 1 : 0;
+    latencies_ms_.push_back(milliseconds(
+        static_cast<std::int64_t>(live->second.record_time.toNSec()) - input.arrival_ns));
+    if (frame.offline.frame.input.supported) {
+      const cv::Mat truth = truthAt(stamp);
+      const View before = look(toMono8(*input.message), truth);
+      const View after = look(toMono8(*live->second.message), truth);
+      before_.add(before);
+      after_.add(after);
+      View true_view;
+      if (!truth.empty()) {
+        true_view = look(truth, {});
+        true_.add(true_view);
+      }
+      if (frame.on_sheet) {
+        addRow(frame, before, after, true_view);
+      }
+    }
+  }
+  live_.erase(live_.begin(), live_.upper_bound(stamp));
+  truth_.erase(truth_.begin(), truth_.upper_bound(stamp));
+}
+
+std::string caption(const View& view) {
+  std::string words = "sharpness " + text(view.sharpness, 1);
+  if (view.tags > 0) {
+    words += ", " + std::to_string(view.tags) + (view.tags == 1 ? " tag" : " tags");
+  }
+  if (view.psnr_db) {
+    words += ", " + text(*view.psnr_db, 1) + " dB";
+  }
+  return words;
+}
+
+void Report::addRow(const PendingFrame& frame, const View& before, const View& after,
+                    const View& truth) {
+  const OutputFrame& output = frame.offline.frame;
+  SheetRow row;
+  row.label = "frame " + std::to_string(frame.number + 1) + ": ";
+  if (output.deblurred) {
+    row.label += "exposure " + text(milliseconds(output.exposure.length()), 1) + " ms, " +
+                 std::to_string(output.events) + " events";
+  } else {
+    row.label += std::string("passed through, ") + toString(output.pass_reason);
+  }
+  row.panels = {before.mono8, frame.events, after.mono8};
+  row.captions = {caption(before), "", caption(after)};
+  if (!truth.mono8.empty()) {
+    row.panels.push_back(truth.mono8);
+    row.captions.push_back(caption(truth));
+  }
+  gain_ = std::min(gain_, displayGain(before.mono8));
+  rows_.push_back(std::move(row));
+}
+
+cv::Mat Report::draw() const {
+  Sheet sheet;
+  sheet.title = arguments_.name;
+  sheet.columns = {"blurry frame", "events (red ON, blue OFF)", "deblurred"};
+  if (true_.frames > 0) {
+    sheet.columns.push_back("truth");
+  }
+  sheet.rows = rows_;
+  if (gain_ > kNoticeableGain) {
+    sheet.title += "  (frames shown " + text(gain_, 1) + " times as bright)";
+    for (SheetRow& row : sheet.rows) {
+      for (cv::Mat& panel : row.panels) {
+        if (panel.channels() == 1) {
+          cv::Mat brighter;
+          panel.convertTo(brighter, CV_8U, gain_);
+          panel = brighter;
+        }
+      }
+    }
+  }
+  return drawSheet(sheet);
+}
+
+/// Name, before, after, truth.
+void printLine(std::ostream& out, const std::string& name, const std::string& before,
+               const std::string& after, const std::string& truth) {
+  constexpr int kNameWidth = 28;
+  constexpr int kColumnWidth = 12;
+  out << std::left << std::setw(kNameWidth) << name << std::right << std::setw(kColumnWidth)
+      << before << std::setw(kColumnWidth) << after << std::setw(kColumnWidth) << truth << "\n";
+}
+
+std::string meanText(double sum, std::size_t count, int digits) {
+  return count == 0 ? "-" : text(sum / static_cast<double>(count), digits);
+}
+
+void Report::print(std::ostream& out) const {
+  const DeblurCounters& counters = pipeline_.counters();
+  out << "frames in                   " << counters.frames_in << "\n"
+      << "frames out                  " << frames_out_ << " (" << frames_lost_ << " lost)\n"
+      << "deblurred                   " << counters.frames_deblurred << "\n"
+      << "passed through unchanged    " << counters.framesPassed() << "\n";
+  for (std::size_t i = 0; i < kPassReasonCount; ++i) {
+    if (counters.frames_passed[i] > 0) {
+      out << "  " << toString(static_cast<PassReason>(i)) << ": " << counters.frames_passed[i]
+          << "\n";
+    }
+  }
+  out << "same bits as deblur_bag     " << frames_as_offline_ << " of " << frames_out_ << "\n";
+  const double span_s =
+      first_event_ns_ ? static_cast<double>(last_event_ns_ - *first_event_ns_) / 1e9 : 0.0;
+  out << "events                      " << counters.events_in;
+  if (span_s > 0.0) {
+    out << ", " << text(static_cast<double>(counters.events_in) / span_s / 1e6, 3) << " Mev/s";
+  }
+  out << "\n";
+  if (!latencies_ms_.empty()) {
+    std::vector<double> sorted = latencies_ms_;
+    std::sort(sorted.begin(), sorted.end());
+    out << "image arrival to output     median " << text(sorted[sorted.size() / 2], 1)
+        << " ms, longest " << text(sorted.back(), 1)
+        << " ms (most of it waiting for the events of the exposure)\n";
+  }
+  const auto p50 = diagnostics_.find("Close latency p50 [ms]");
+  const auto p99 = diagnostics_.find("Close latency p99 [ms]");
+  if (p50 != diagnostics_.end() && p99 != diagnostics_.end()) {
+    out << "last message to output      median " << p50->second << " ms, 99 % within "
+        << p99->second << " ms\n";
+  }
+  out << "\n";
+  printLine(out, "", "blurry", "deblurred", true_.frames > 0 ? "truth" : "");
+  const bool truth = true_.frames > 0;
+  printLine(out, "sharpness [DN^2/px^2]", meanText(before_.sharpness, before_.frames, 1),
+            meanText(after_.sharpness, after_.frames, 1),
+            truth ? meanText(true_.sharpness, true_.frames, 1) : "");
+  printLine(out, "AprilTags found (36h11)", std::to_string(before_.tags),
+            std::to_string(after_.tags), truth ? std::to_string(true_.tags) : "");
+  if (truth) {
+    printLine(out, "PSNR [dB]", meanText(before_.psnr_db, before_.frames_with_psnr, 2),
+              meanText(after_.psnr_db, after_.frames_with_psnr, 2), "");
+  }
+}
+
+/// \return false when help was asked for and given
+bool parseArguments(int argc, char** argv, Arguments& arguments) {
+  TopicNames& topics = arguments.topics;
+  po::options_description visible("Options");
+  visible.add_options()("help,h", "print this")("in", po::value(&arguments.bag)->required(),
+                                                "recording with deblurred frames")(
+      "config", po::value(&arguments.config)->required(), "YAML file with the parameters")(
+      "picture", po::value(&arguments.picture)->required(), "picture to write, e.g. out.png")(
+      "name", po::value(&arguments.name), "heading of the picture")(
+      "events", po::value(&topics.events)->default_value(topics.events))(
+      "image", po::value(&topics.image)->default_value(topics.image))(
+      "exposure", po::value(&topics.exposure)->default_value(topics.exposure))(
+      "camera-info", po::value(&topics.camera_info))(
+      "truth", po::value(&arguments.truth)->default_value(arguments.truth));
+  po::options_description all;
+  all.add(visible).add_options()("override", po::value(&arguments.overrides));
+  po::positional_options_description positional;
+  positional.add("override", -1);
+  po::variables_map values;
+  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  if (values.count("help") > 0) {
+    std::cout << "Usage: demo_report --in BAG --config YAML --picture PNG [options] "
+                 "[parameter:=value ...]\n\n"
+                 "Compares the frames of a recording with the deblurred ones that were recorded "
+                 "beside them.\n\n"
+              << visible;
+    return false;
+  }
+  po::notify(values);
+  if (arguments.name.empty()) {
+    arguments.name = arguments.bag;
+  }
+  return true;
+}
+
+int run(const Arguments& arguments) {
+  const LoadedParameters parameters = parametersFromFile(arguments.config, arguments.overrides);
+  BagReader reader(arguments.bag);
+  Report report(arguments, parameters, reader);
+  BagMessage message;
+  while (reader.next(message)) {
+    report.add(message);
+  }
+  report.finish();
+  report.print(std::cout);
+  if (!report.hasOutput()) {
+    std::cerr << "demo_report: no deblurred frame was published\n";
+    return 1;
+  }
+  if (!cv::imwrite(arguments.picture, report.draw())) {
+    std::cerr << "demo_report: cannot write " << arguments.picture << "\n";
+    return 1;
+  }
+  return report.lostFrames() ? 1 : 0;
+}
+
+}  // namespace
+}  // namespace fast_edi
+
+int main(int argc, char** argv) {
+  try {
+    fast_edi::Arguments arguments;
+    return fast_edi::parseArguments(argc, argv, arguments) ? fast_edi::run(arguments) : 0;
+  } catch (const std::exception& error) {
+    std::cerr << "demo_report: " << error.what() << "\n";
+    return 1;
+  }
+}
