@@ -192,32 +192,121 @@ bool nearTag(const cv::Point2d& plane_px, double radius_px, const std::vector<Pl
   });
 }
 
-void drawPoster(cv::Mat3f& canvas, double scale, double density, const std::vector<PlacedTag>& tags,
-                RandomEngine& random) {
-  canvas.setTo(Color(0.46, 0.43, 0.40));
-  shade(fractalNoise(canvas.size(), 220.0 * scale, 25.0 * scale, random), 0.10, canvas);
-
-  using Draw = void (*)(cv::Mat3f&, const cv::Point2d&, double, RandomEngine&);
-  static constexpr Draw kStickers[] = {drawLetter, drawBall,        drawPolygonSticker,
-                                       drawRings,  drawSiemensStar, drawGreyRamp};
-  constexpr int kKinds = static_cast<int>(sizeof(kStickers) / sizeof(kStickers[0]));
-  constexpr double kPitchPx = 46.0;
-  const int columns = static_cast<int>(canvas.cols / scale / kPitchPx);
-  const int rows = static_cast<int>(canvas.rows / scale / kPitchPx);
+/// Bricks whose contrast stays below a usual contrast threshold: structure for the eye that costs
+/// hardly any events.
+void drawBricks(cv::Mat3f& canvas, double scale, RandomEngine& random) {
+  constexpr double kBrickWidthPx = 44.0;
+  constexpr double kBrickHeightPx = 17.0;
+  constexpr double kJointPx = 2.0;
+  const Color joint(0.52, 0.49, 0.46);
+  canvas.setTo(joint);
+  const int rows = static_cast<int>(canvas.rows / scale / kBrickHeightPx) + 1;
+  const int columns = static_cast<int>(canvas.cols / scale / kBrickWidthPx) + 2;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
-      // Every place draws the same amount of random numbers, so that neighbours do not depend on
-      // whether it is taken.
-      RandomEngine place(random());
-      const cv::Point2d plane((column + 0.5 - 0.5 * columns) * kPitchPx + uniform(place, -5.0, 5.0),
-                              (row + 0.5 - 0.5 * rows) * kPitchPx + uniform(place, -5.0, 5.0));
-      const double radius = uniform(place, 12.0, 20.0);
-      const int kind = uniformInt(place, 0, kKinds - 1);
-      if (uniform(place, 0.0, 1.0) > density || nearTag(plane, radius + 2.0, tags)) continue;
-      const cv::Point2d center = plane * scale + 0.5 * cv::Point2d(canvas.cols, canvas.rows);
-      kStickers[kind](canvas, center, radius * scale, place);
+      const double x = (column - (row % 2 == 0 ? 0.5 : 1.0)) * kBrickWidthPx;
+      const double y = row * kBrickHeightPx;
+      const double shading = uniform(random, 1.04, 1.17);
+      cv::rectangle(
+          canvas,
+          cv::Rect2d((x + kJointPx) * scale, y * scale, (kBrickWidthPx - kJointPx) * scale,
+                     (kBrickHeightPx - kJointPx) * scale),
+          joint * shading, cv::FILLED);
     }
   }
+}
+
+struct Sticker {
+  using Draw = void (*)(cv::Mat3f&, const cv::Point2d&, double, RandomEngine&);
+  Draw draw;
+  cv::Point2d center_px;
+  double radius_px;
+  RandomEngine random;
+};
+
+std::vector<Sticker> placeStickers(cv::Size size_px, double density,
+                                   const std::vector<PlacedTag>& tags, RandomEngine& random) {
+  static constexpr Sticker::Draw kKinds[] = {drawLetter, drawBall,        drawPolygonSticker,
+                                             drawRings,  drawSiemensStar, drawGreyRamp};
+  constexpr int kKindCount = static_cast<int>(sizeof(kKinds) / sizeof(kKinds[0]));
+  constexpr double kPitchPx = 46.0;
+  constexpr double kClearancePx = 4.0;
+  const int columns = static_cast<int>(size_px.width / kPitchPx);
+  const int rows = static_cast<int>(size_px.height / kPitchPx);
+  std::vector<Sticker> stickers;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      // Every place has random numbers of its own, so that it does not depend on its neighbours.
+      RandomEngine place(random());
+      const cv::Point2d center(
+          (column + 0.5 - 0.5 * columns) * kPitchPx + uniform(place, -5.0, 5.0),
+          (row + 0.5 - 0.5 * rows) * kPitchPx + uniform(place, -5.0, 5.0));
+      const double radius = uniform(place, 12.0, 20.0);
+      const int kind = uniformInt(place, 0, kKindCount - 1);
+      if (uniform(place, 0.0, 1.0) > density || nearTag(center, radius + kClearancePx, tags)) {
+        continue;
+      }
+      stickers.push_back({kKinds[kind], center, radius, place});
+    }
+  }
+  return stickers;
+}
+
+/// Soft shadows to the lower right of what sticks to the wall.
+void drawShadows(cv::Mat3f& canvas, double scale, const std::vector<Sticker>& stickers,
+                 const std::vector<PlacedTag>& tags) {
+  constexpr double kDarkest = 0.4;
+  constexpr double kSoftnessPx = 2.5;
+  const cv::Point2d offset(2.5, 3.0);
+  // One mask element for each px is fine enough for something soft.
+  const cv::Size size_px(static_cast<int>(canvas.cols / scale),
+                         static_cast<int>(canvas.rows / scale));
+  const cv::Point2d origin = 0.5 * cv::Point2d(size_px.width, size_px.height) + offset;
+  cv::Mat1f mask = cv::Mat1f::zeros(size_px);
+  for (const Sticker& sticker : stickers) {
+    cv::circle(mask, origin + sticker.center_px, cvRound(0.85 * sticker.radius_px), 1.0,
+               cv::FILLED);
+  }
+  for (const PlacedTag& tag : tags) {
+    std::vector<cv::Point> points;
+    for (const cv::Point2d& corner : tag.corners(kTagPaperFactor))
+      points.push_back(origin + corner);
+    cv::fillConvexPoly(mask, points, 1.0);
+  }
+  cv::GaussianBlur(mask, mask, cv::Size(), kSoftnessPx);
+  cv::Mat1f shadow;
+  cv::resize(mask, shadow, canvas.size(), 0.0, 0.0, cv::INTER_LINEAR);
+  shade(shadow, -kDarkest, canvas);
+}
+
+/// Light that falls off from the upper left to the lower right of the view.
+void drawLightFalloff(cv::Mat3f& canvas, double scale) {
+  const cv::Point2d lamp =
+      0.5 * cv::Point2d(canvas.cols, canvas.rows) - cv::Point2d(70.0, 60.0) * scale;
+  constexpr double kReachPx = 330.0;
+  for (int y = 0; y < canvas.rows; ++y) {
+    for (int x = 0; x < canvas.cols; ++x) {
+      const double u = (x - lamp.x) / (kReachPx * scale);
+      const double v = (y - lamp.y) / (kReachPx * scale);
+      canvas(y, x) *= static_cast<float>(1.15 / (1.0 + u * u + v * v));
+    }
+  }
+}
+
+void drawPoster(cv::Mat3f& canvas, double scale, double density, const std::vector<PlacedTag>& tags,
+                RandomEngine& random) {
+  drawBricks(canvas, scale, random);
+  shade(fractalNoise(canvas.size(), 160.0 * scale, 25.0 * scale, random), 0.05, canvas);
+  const cv::Size size_px(static_cast<int>(canvas.cols / scale),
+                         static_cast<int>(canvas.rows / scale));
+  std::vector<Sticker> stickers = placeStickers(size_px, density, tags, random);
+  drawShadows(canvas, scale, stickers, tags);
+  const cv::Point2d origin = 0.5 * cv::Point2d(canvas.cols, canvas.rows);
+  for (Sticker& sticker : stickers) {
+    sticker.draw(canvas, origin + sticker.center_px * scale, sticker.radius_px * scale,
+                 sticker.random);
+  }
+  drawLightFalloff(canvas, scale);
 }
 
 void drawNatural(cv::Mat3f& canvas, double scale, RandomEngine& random) {

@@ -15,7 +15,7 @@ constexpr SensorSize kDavis240cSize{240, 180};
 
 /// Procedural textures; a picture of the user's own replaces them.
 enum class TextureKind {
-  kPoster,   ///< a wall with stickers: discs, stars, rings, letters, shaded balls on soft ground
+  kPoster,   ///< a brick wall with stickers: stars, rings, letters, shaded balls; edges and calm
   kNatural,  ///< dead leaves: overlapping shapes of power-law size with 1/f shading; many events
   kFlat,     ///< almost nothing to see: slow shading of a few percent
 };
