@@ -115,10 +115,8 @@ std::unique_ptr<DeblurNode::Inputs> DeblurNode::subscribe() {
     inputs->bias_updates =
         nh_.subscribe("bias_updates", kLatestWins, &DeblurNode::receiveBiasUpdate, this, no_delay);
   }
-  if (parameters_.deblur.exposure_source == ExposureSource::kTopic) {
-    inputs->exposure =
-        nh_.subscribe("exposure", kExposureQueue, &DeblurNode::receiveExposure, this, no_delay);
-  }
+  inputs->exposure =
+      nh_.subscribe("exposure", kExposureQueue, &DeblurNode::receiveExposure, this, no_delay);
   inputs->events = std::make_unique<EventSubscription>(
       nh_, "events", kEventQueue,
       [this](const WireEvents& events, SensorSize size, std::uint32_t sequence) {
