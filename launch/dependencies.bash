@@ -1,0 +1,128 @@
+# What building, running and testing needs beyond a bare system, for launch/demo and test/run.
+#
+#   . launch/dependencies.bash
+#   fast_edi_prepare            # to build and run
+#   fast_edi_prepare test       # to run the tests and style checks as well
+#
+# Puts /usr/bin first in PATH (another python3 in front of the system's breaks catkin), installs the
+# missing system packages (as root, or by sudo) and sources ROS where it lies in /opt/ros.
+# Debian 12 carries ROS itself; Ubuntu 20.04 takes it from the ROS Noetic packages.
+
+FAST_EDI_NOETIC=/opt/ros/noetic
+
+# Packages of Debian 12.
+FAST_EDI_DEBIAN_BUILD=(
+  g++ make cmake catkin
+  libroscpp-dev libnodeletlib-dev libcv-bridge-dev libimage-transport-dev librosbag-dev
+  libdynamic-reconfigure-config-init-mutex-dev libdiagnostic-updater-dev
+  libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
+  libapriltag-dev libbz2-dev liblz4-dev
+  libdlib-dev libblas-dev liblapack-dev libsvm-dev
+)
+FAST_EDI_DEBIAN_RUN=(
+  libnodeletlib-tools python3-roslaunch python3-rosbag python3-rostopic python3-sensor-msgs
+  python3-diagnostic-msgs python3-dynamic-reconfigure rosbash opencv-data
+)
+FAST_EDI_DEBIAN_TEST=(
+  python3-rostest libgtest-dev libgmock-dev catkin-lint clang-tidy clang-format libxml2-utils
+)
+
+# The same on Ubuntu 20.04 with the ROS Noetic packages.
+FAST_EDI_NOETIC_BUILD=(
+  g++ make cmake ros-noetic-catkin
+  ros-noetic-roscpp ros-noetic-nodelet ros-noetic-cv-bridge ros-noetic-image-transport
+  ros-noetic-rosbag ros-noetic-dynamic-reconfigure ros-noetic-diagnostic-updater
+  ros-noetic-pluginlib ros-noetic-sensor-msgs ros-noetic-std-msgs ros-noetic-apriltag
+  libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
+  libbz2-dev liblz4-dev libdlib-dev libblas-dev liblapack-dev libsvm-dev
+)
+FAST_EDI_NOETIC_RUN=(
+  ros-noetic-roslaunch ros-noetic-rostopic ros-noetic-rosbash ros-noetic-diagnostic-msgs
+)
+FAST_EDI_NOETIC_TEST=(
+  ros-noetic-rostest libgtest-dev libgmock-dev python3-catkin-lint clang-tidy clang-format
+  libxml2-utils
+)
+
+# Runs a command as root. Asks for a password only where somebody can type one.
+fast_edi_as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  elif ! command -v sudo >/dev/null; then
+    echo "fast_edi: not root and no sudo; please run as root: $*" >&2
+    return 1
+  elif [ -t 0 ] && [ "${CI:-}" != true ]; then
+    sudo "$@"
+  else
+    sudo -n "$@"
+  fi
+}
+
+# Those of the packages that are not installed.
+fast_edi_missing_packages() {
+  local package
+  for package in "$@"; do
+    case "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" in
+      installed) ;;
+      *) echo "$package" ;;
+    esac
+  done
+}
+
+# Installs those of the packages that are missing; says which.
+fast_edi_install() {
+  local missing
+  mapfile -t missing < <(fast_edi_missing_packages "$@")
+  if [ "${#missing[@]}" -eq 0 ]; then
+    echo "fast_edi: all $# system packages needed are installed"
+    return 0
+  fi
+  if ! command -v apt-get >/dev/null; then
+    echo "fast_edi: no apt-get here; please install what corresponds to: ${missing[*]}" >&2
+    return 1
+  fi
+  echo "fast_edi: installing ${#missing[@]} of $# system packages: ${missing[*]}"
+  # A package source that cannot be reached matters only if the installation fails.
+  fast_edi_as_root apt-get -q update ||
+    echo "fast_edi: apt-get update failed, going on with the package lists as they are" >&2
+  fast_edi_as_root env DEBIAN_FRONTEND=noninteractive \
+    apt-get -q install -y --no-install-recommends "${missing[@]}" </dev/null
+}
+
+# fast_edi_prepare [test]
+fast_edi_prepare() {
+  export PATH="/usr/bin:$PATH"
+  local packages
+  if [ -d "$FAST_EDI_NOETIC" ]; then
+    packages=("${FAST_EDI_NOETIC_BUILD[@]}" "${FAST_EDI_NOETIC_RUN[@]}")
+    [ "${1:-}" = test ] && packages+=("${FAST_EDI_NOETIC_TEST[@]}")
+  else
+    packages=("${FAST_EDI_DEBIAN_BUILD[@]}" "${FAST_EDI_DEBIAN_RUN[@]}")
+    [ "${1:-}" = test ] && packages+=("${FAST_EDI_DEBIAN_TEST[@]}")
+  fi
+  fast_edi_install "${packages[@]}" || return 1
+  if [ -d "$FAST_EDI_NOETIC" ]; then
+    fast_edi_source "$FAST_EDI_NOETIC/setup.bash"
+  fi
+}
+
+# Sources a setup file of catkin's, which trips over `set -e` and `set -u`.
+fast_edi_source() {
+  local options=$-
+  set +eu
+  # shellcheck disable=SC1090
+  . "$1"
+  [[ $options == *e* ]] && set -e
+  [[ $options == *u* ]] && set -u
+  return 0
+}
+
+# fast_edi_configure BUILD_FOLDER [CMake option ...]: configures the package in a build folder of
+# its own.
+fast_edi_configure() {
+  local build=$1
+  shift
+  # Without this folder, the first configuration records an empty PYTHONPATH for the tests.
+  mkdir -p "$build/devel/lib/python3/dist-packages" &&
+    cmake -S "$(dirname "${BASH_SOURCE[0]}")/.." -B "$build" "$@"
+}
