@@ -42,6 +42,8 @@ class Ours : public Contender {
     frame.stamp_ns = exposure.at(ExposureInstant::kMid);
     frame.image = {blurry, size_, static_cast<std::size_t>(size_.width), PixelFormat::kMono8};
     deblurrer_.addFrame(std::move(frame), ++clock_ns_);
+    deblurrer_.addExposure(
+        static_cast<std::int32_t>(exposure.length() / kNanosecondsPerMicrosecond), ++clock_ns_);
     if (sink_.finished != frames_) throw std::logic_error("the frame was not closed at once");
   }
   std::string fault(Exposures exposures) const override {
@@ -63,8 +65,6 @@ class Ours : public Contender {
   static DeblurParameters parameters() {
     DeblurParameters parameters;
     parameters.thresholds = kThresholds;
-    parameters.exposure_source = ExposureSource::kParameter;
-    parameters.exposure_time_ns = 30 * kNanosecondsPerMillisecond;
     parameters.max_buffered_events = kMaxBufferedEvents;
     return parameters;
   }

@@ -14,7 +14,7 @@ namespace fast_edi::benchmarks {
 /// How the exposures of a run lie; decides what can be known of them beforehand.
 enum class Exposures {
   kPeriodic,   ///< as predicted
-  kJittering,  ///< some 20 us off: the prediction has to be corrected
+  kJittering,  ///< a few us off: the prediction has to be corrected
   kSurprise,   ///< some ms off: the prediction is of no use
 };
 const char* toString(Exposures exposures);

@@ -1,8 +1,8 @@
 #include "frame_run.hpp"
 
-#include <time.h>
-
 #include <algorithm>
+
+#include "timing.hpp"
 
 namespace fast_edi::benchmarks {
 
@@ -13,32 +13,8 @@ constexpr int kWarmUpFrames = 4;
 constexpr std::uint64_t kImageSeed = 7;
 
 /// Offsets from the regular exposure, played in turn.
-constexpr std::int64_t kJitters_ns[] = {0, 17'000, -12'000, 20'000, -20'000, 5'000};
+constexpr std::int64_t kJitters_ns[] = {0, 8'000, -6'000, 7'000, -8'000, 2'000};
 constexpr std::int64_t kSurprises_ns[] = {3'100'000, 400'000, 5'900'000, 1'700'000, 4'500'000};
-
-/// Counts the processor time of this thread, so that other processes on the machine do not show.
-/// On an idle machine it equals the elapsed time: nothing here waits for anything.
-class Stopwatch {
- public:
-  double seconds() const { return now() - start_; }
-
- private:
-  static double now() {
-    timespec time;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) +
-           static_cast<double>(time.tv_nsec) / kNanosecondsPerSecond;
-  }
-
-  double start_ = now();
-};
-
-double percentile(std::vector<double> values, double fraction) {
-  const auto rank = static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank),
-                   values.end());
-  return values[rank];
-}
 
 template <std::size_t n>
 std::int64_t inTurn(const std::int64_t (&values)[n], std::uint64_t index) {

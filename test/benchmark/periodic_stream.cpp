@@ -1,7 +1,6 @@
 #include "periodic_stream.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <memory>
 
 namespace fast_edi::benchmarks {
@@ -9,23 +8,7 @@ namespace fast_edi::benchmarks {
 namespace {
 
 constexpr std::int64_t kFirstStart_ns = 1'000'000'000 * kNanosecondsPerSecond;
-constexpr std::size_t kSecondsOffset = 4;
-constexpr std::size_t kNanosecondsOffset = 8;
 constexpr std::uint64_t kSeed = 1;
-
-/// Adds less than a second to a record's stamp.
-void moveOn(std::uint8_t* record, std::uint32_t by_ns) {
-  std::uint32_t sec, nsec;
-  std::memcpy(&sec, record + kSecondsOffset, sizeof sec);
-  std::memcpy(&nsec, record + kNanosecondsOffset, sizeof nsec);
-  nsec += by_ns;
-  if (nsec >= kNanosecondsPerSecond) {
-    nsec -= static_cast<std::uint32_t>(kNanosecondsPerSecond);
-    ++sec;
-  }
-  std::memcpy(record + kSecondsOffset, &sec, sizeof sec);
-  std::memcpy(record + kNanosecondsOffset, &nsec, sizeof nsec);
-}
 
 }  // namespace
 
@@ -50,9 +33,7 @@ WireEvents PeriodicStream::packet(std::size_t index) const {
 }
 
 void PeriodicStream::next() {
-  for (std::size_t i = 0; i < wire_.size(); i += kWireEventBytes) {
-    moveOn(wire_.data() + i, static_cast<std::uint32_t>(kPeriod_ns));
-  }
+  testing::shiftStamps(kPeriod_ns, wire_);
   start_ns_ += kPeriod_ns;
 }
 

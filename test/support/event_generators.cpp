@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 namespace fast_edi::testing {
@@ -190,6 +191,27 @@ std::vector<std::uint8_t> toWire(const std::vector<Event>& events) {
 
 WireEvents wireView(const std::vector<std::uint8_t>& bytes) {
   return {bytes.data(), bytes.size() / kWireEventBytes};
+}
+
+void shiftStamps(std::int64_t by_ns, std::vector<std::uint8_t>& bytes) {
+  constexpr std::size_t kSecondsOffset = 4;
+  constexpr std::size_t kNanosecondsOffset = 8;
+  const auto by_sec = static_cast<std::uint32_t>(by_ns / kNanosecondsPerSecond);
+  const auto by_nsec = static_cast<std::uint32_t>(by_ns % kNanosecondsPerSecond);
+  for (std::size_t i = 0; i + kWireEventBytes <= bytes.size(); i += kWireEventBytes) {
+    std::uint8_t* record = bytes.data() + i;
+    std::uint32_t sec, nsec;
+    std::memcpy(&sec, record + kSecondsOffset, sizeof sec);
+    std::memcpy(&nsec, record + kNanosecondsOffset, sizeof nsec);
+    sec += by_sec;
+    nsec += by_nsec;
+    if (nsec >= kNanosecondsPerSecond) {
+      nsec -= static_cast<std::uint32_t>(kNanosecondsPerSecond);
+      ++sec;
+    }
+    std::memcpy(record + kSecondsOffset, &sec, sizeof sec);
+    std::memcpy(record + kNanosecondsOffset, &nsec, sizeof nsec);
+  }
 }
 
 std::vector<std::uint8_t> makeGreyImage(SensorSize size, std::uint64_t seed) {

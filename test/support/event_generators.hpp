@@ -40,6 +40,9 @@ std::vector<std::uint8_t> toWire(const std::vector<Event>& events);
 /// View of a whole wire buffer.
 WireEvents wireView(const std::vector<std::uint8_t>& bytes);
 
+/// Moves the stamps of all records on. \pre 0 <= by_ns, stamps stay below 2^32 s
+void shiftStamps(std::int64_t by_ns, std::vector<std::uint8_t>& bytes);
+
 /// A reproducible grey image with levels in 20..219 (no saturation at moderate gains).
 std::vector<std::uint8_t> makeGreyImage(SensorSize size, std::uint64_t seed);
 
