@@ -1,5 +1,6 @@
 #include "fast_edi/simulation/april_tags.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -69,9 +70,19 @@ cv::Mat1b tagCells(int id) {
 std::vector<PlacedTag> placeTags(int count, double side_px, SensorSize view, RandomEngine& random) {
   std::vector<PlacedTag> tags;
   if (count <= 0) return tags;
-  const double aspect = static_cast<double>(view.width) / view.height;
-  const int columns = static_cast<int>(std::ceil(std::sqrt(count * aspect)));
-  const int rows = (count + columns - 1) / columns;
+  const auto rowsFor = [count](int columns) { return (count + columns - 1) / columns; };
+  // As many columns as leave every tag the most room.
+  int columns = 1;
+  double room = 0.0;
+  for (int candidate = 1; candidate <= count; ++candidate) {
+    const double candidate_room = std::min(static_cast<double>(view.width) / candidate,
+                                           static_cast<double>(view.height) / rowsFor(candidate));
+    if (candidate_room > room) {
+      room = candidate_room;
+      columns = candidate;
+    }
+  }
+  const int rows = rowsFor(columns);
   // A turned sheet of paper needs more room than a straight one.
   const double sheet = side_px * kTagPaperFactor * (std::cos(kMaxTurnRad) + std::sin(kMaxTurnRad));
   const double cell_height = static_cast<double>(view.height) / rows;

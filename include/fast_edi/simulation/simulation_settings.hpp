@@ -26,7 +26,7 @@ enum class MotionKind {
   kMild,   ///< about 100 px/s
   kPan,    ///< sideways sweeps of up to 500 px/s
   kSpin,   ///< rotation about the optical axis
-  kShake,  ///< a shaken hand, about 700 px/s rms: strong blur
+  kShake,  ///< a shaken hand, about 900 px/s rms at the fastest corner: strong blur
 };
 
 /// What the camera looks at: a plane seen at one sensor pixel per plane pixel in the nominal pose.
