@@ -17,12 +17,27 @@ void* countedAllocation(std::size_t bytes, std::size_t alignment) {
 
 }  // namespace
 
-// The array and nothrow forms of the standard library end in these.
+// The array forms of the standard library end in these; so do the nothrow forms, but not under
+// AddressSanitizer, which would then see memory of its own freed by us.
 void* operator new(std::size_t bytes) {
   return countedAllocation(bytes, __STDCPP_DEFAULT_NEW_ALIGNMENT__);
 }
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   return countedAllocation(bytes, static_cast<std::size_t>(alignment));
+}
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  try {
+    return operator new(bytes);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  try {
+    return operator new(bytes, alignment);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
 }
 void operator delete(void* memory) noexcept {
   std::free(memory);
