@@ -9,18 +9,26 @@
 namespace fast_edi {
 namespace {
 
-constexpr double kWhiteDn = 255.0;
-constexpr double kEdgeFactor = 2.0;  // gradients above this multiple of their rms are edges
-
-double totalVariation(const cv::Mat1f& image) {
-  cv::Mat1f extended;
-  cv::copyMakeBorder(image, extended, 0, 1, 0, 1, cv::BORDER_REPLICATE);
-  const cv::Rect all(0, 0, image.cols, image.rows);
-  const cv::Mat1f dx = extended(all + cv::Point(1, 0)) - image;
-  const cv::Mat1f dy = extended(all + cv::Point(0, 1)) - image;
+cv::Mat1f sobelMagnitude(const cv::Mat& image) {
+  cv::Mat1f gx;
+  cv::Mat1f gy;
+  cv::Sobel(image, gx, CV_32F, 1, 0);
+  cv::Sobel(image, gy, CV_32F, 0, 1);
   cv::Mat1f magnitude;
-  cv::magnitude(dx, dy, magnitude);
-  return cv::sum(magnitude)[0];
+  cv::magnitude(gx, gy, magnitude);
+  return magnitude;
+}
+
+double correlation(const cv::Mat1f& a, const cv::Mat1f& b) {
+  cv::Scalar mean_a;
+  cv::Scalar mean_b;
+  cv::Scalar deviation_a;
+  cv::Scalar deviation_b;
+  cv::meanStdDev(a, mean_a, deviation_a);
+  cv::meanStdDev(b, mean_b, deviation_b);
+  const double deviations = deviation_a[0] * deviation_b[0];
+  const double mean_product = a.dot(b) / static_cast<double>(a.total());
+  return deviations > 0.0 ? (mean_product - mean_a[0] * mean_b[0]) / deviations : 0.0;
 }
 
 }  // namespace
@@ -82,38 +90,42 @@ cv::Mat1f eventEdgeMap(const std::vector<Event>& events, SensorSize size, std::i
         std::abs(static_cast<double>(event.t_ns - reference_ns)) / static_cast<double>(decay_ns);
     map(event.y, event.x) += static_cast<float>((event.on ? 1.0 : -1.0) * std::exp(-distance));
   }
-  return map;
+  return cv::abs(map);
 }
 
-cv::Mat1b binaryEdges(const cv::Mat& image) {
-  cv::Mat1f gx;
-  cv::Mat1f gy;
-  cv::Sobel(image, gx, CV_32F, 1, 0);
-  cv::Sobel(image, gy, CV_32F, 0, 1);
-  const cv::Mat1f energy = gx.mul(gx) + gy.mul(gy);
-  const double threshold = kEdgeFactor * kEdgeFactor * cv::mean(energy)[0];
-  cv::Mat1b edges = (energy > threshold);
-  return edges / 255;
+double totalVariation(const cv::Mat& image) {
+  cv::Mat1f extended;
+  image.convertTo(extended, CV_32F);
+  cv::copyMakeBorder(extended, extended, 0, 1, 0, 1, cv::BORDER_REPLICATE);
+  const cv::Rect all(0, 0, image.cols, image.rows);
+  const cv::Mat1f values = extended(all);
+  const cv::Mat1f dx = extended(all + cv::Point(1, 0)) - values;
+  const cv::Mat1f dy = extended(all + cv::Point(0, 1)) - values;
+  cv::Mat1f magnitude;
+  cv::magnitude(dx, dy, magnitude);
+  return cv::sum(magnitude)[0];
 }
 
-double sharpnessEnergy(const cv::Mat& latent, const cv::Mat1b& event_edges, double lambda) {
-  if (latent.size() != event_edges.size()) {
-    throw std::invalid_argument("sharpness energy: latent image and event edges differ in size");
+SharpnessEnergy::SharpnessEnergy(const cv::Mat& blurry, const cv::Mat1f& event_edges, double lambda)
+    : blurry_variation_(totalVariation(blurry)),
+      event_edges_(event_edges.clone()),
+      lambda_(lambda) {
+  if (blurry.size() != event_edges.size()) {
+    throw std::invalid_argument("sharpness energy: blurry frame and event edges differ in size");
   }
-  cv::Mat1f image;
-  latent.convertTo(image, CV_32F, 1.0 / kWhiteDn);
-  const cv::Mat1b common = binaryEdges(image).mul(event_edges);
-  return lambda * totalVariation(image) - static_cast<double>(cv::countNonZero(common));
+}
+
+double SharpnessEnergy::operator()(const cv::Mat& latent) const {
+  const double variation =
+      blurry_variation_ > 0.0 ? totalVariation(latent) / blurry_variation_ : 0.0;
+  return lambda_ * variation - correlation(sobelMagnitude(latent), event_edges_);
 }
 
 ContrastSearchResult searchContrast(const std::function<cv::Mat(double)>& deblur,
-                                    const cv::Mat1b& event_edges,
+                                    const SharpnessEnergy& energy,
                                     const ContrastSearchOptions& options) {
-  const Minimum minimum = fibonacciSearch(
-      [&](double contrast) {
-        return sharpnessEnergy(deblur(contrast), event_edges, options.lambda);
-      },
-      options.low, options.high, options.intervals);
+  const Minimum minimum = fibonacciSearch([&](double contrast) { return energy(deblur(contrast)); },
+                                          options.low, options.high, options.intervals);
   return {minimum.position, minimum.value, minimum.evaluations};
 }
 

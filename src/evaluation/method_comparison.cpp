@@ -1,5 +1,6 @@
 #include "fast_edi/evaluation/method_comparison.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <stdexcept>
@@ -15,6 +16,8 @@ namespace fast_edi {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::int64_t kDecaysPerExposure = 10;  // of the event map, see eventEdgeMap()
 
 constexpr std::array<Method, 3> kPipelines = {Method::kPlain, Method::kCounter, Method::kOurs};
 
@@ -108,8 +111,9 @@ class SearchingEdi {
       return result;
     }
     const std::int64_t reference_ns = window.at(ExposureInstant::kMid);
-    const cv::Mat1b edges = binaryEdges(eventEdgeMap(
-        eventsIn(window), size, reference_ns, std::max<std::int64_t>(1, window.length() / 10)));
+    const cv::Mat1f edges =
+        eventEdgeMap(eventsIn(window), size, reference_ns,
+                     std::max<std::int64_t>(1, window.length() / kDecaysPerExposure));
     std::vector<float> gain(size.pixelCount());
     const auto latent = [&](double contrast) {
       DoubleIntegral integral(size, {contrast, contrast}, Weighting::kTime);
@@ -118,7 +122,8 @@ class SearchingEdi {
       parameters_.response.applyGain(viewOf(blurry), gain.data(), mutableViewOf(image));
       return image;
     };
-    result.contrast = searchContrast(latent, edges, options_).contrast;
+    const SharpnessEnergy energy(blurry, edges, options_.lambda);
+    result.contrast = searchContrast(latent, energy, options_).contrast;
     result.image = latent(result.contrast);
     stream_.discardBefore(window.start_ns);
     result.runtime_ms = spent_ms_ + millisecondsSince(start);

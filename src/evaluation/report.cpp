@@ -46,17 +46,31 @@ std::string nameWithUnit(const MeasureInfo& info) {
   return name;
 }
 
-/// Methods that have any figure in the group: truth is often not known.
-std::vector<Method> methodsIn(const EvaluationGroup& group) {
+bool anyMethodHas(const EvaluationGroup& group, Measure measure) {
+  return std::any_of(kAllMethods.begin(), kAllMethods.end(), [&](Method method) {
+    return meanOver(group.members, method, measure).has_value();
+  });
+}
+
+std::vector<Measure> measuresIn(const EvaluationGroup& group) {
+  std::vector<Measure> measures;
+  for (std::size_t i = 0; i < kMeasureCount; ++i) {
+    if (anyMethodHas(group, static_cast<Measure>(i))) {
+      measures.push_back(static_cast<Measure>(i));
+    }
+  }
+  return measures;
+}
+
+/// Methods that have a figure for any of the measures: truth is often not known, and is not
+/// compared with itself.
+std::vector<Method> methodsWith(const EvaluationGroup& group,
+                                const std::vector<Measure>& measures) {
   std::vector<Method> methods;
   for (const Method method : kAllMethods) {
-    const bool has_truth_only = method == Method::kTruth;
-    const bool shown =
-        !has_truth_only ||
-        std::any_of(group.members.begin(), group.members.end(), [method](const Evaluation* member) {
-          return !member->example[indexOf(method)].empty();
-        });
-    if (shown) {
+    if (std::any_of(measures.begin(), measures.end(), [&](Measure measure) {
+          return meanOver(group.members, method, measure).has_value();
+        })) {
       methods.push_back(method);
     }
   }
@@ -73,22 +87,6 @@ void printHeader(std::ostream& out, const std::string& first, const std::vector<
     out << "---:|";
   }
   out << "\n";
-}
-
-bool anyMethodHas(const EvaluationGroup& group, Measure measure) {
-  return std::any_of(kAllMethods.begin(), kAllMethods.end(), [&](Method method) {
-    return meanOver(group.members, method, measure).has_value();
-  });
-}
-
-std::vector<Measure> measuresIn(const EvaluationGroup& group) {
-  std::vector<Measure> measures;
-  for (std::size_t i = 0; i < kMeasureCount; ++i) {
-    if (anyMethodHas(group, static_cast<Measure>(i))) {
-      measures.push_back(static_cast<Measure>(i));
-    }
-  }
-  return measures;
 }
 
 void writePicture(const fs::path& path, const cv::Mat& picture) {
@@ -134,7 +132,7 @@ void writeCsv(const fs::path& path, const std::vector<EvaluationGroup>& groups) 
   }
   file << "\n" << std::setprecision(kDigits);
   for (const EvaluationGroup& group : groups) {
-    const std::vector<Method> methods = methodsIn(group);
+    const std::vector<Method> methods = methodsWith(group, measuresIn(group));
     for (const Evaluation* member : group.members) {
       for (const FrameFigures& frame : member->frames) {
         for (const Method method : methods) {
@@ -177,7 +175,7 @@ cv::Mat measurePicture(const EvaluationGroup& group, Measure measure) {
   for (const Evaluation* member : group.members) {
     names.push_back(member->name);
   }
-  for (const Method method : methodsIn(group)) {
+  for (const Method method : methodsWith(group, {measure})) {
     PlotSeries line = {toString(method), {}};
     if (group.members.size() == 1) {
       for (const FrameFigures& frame : group.members.front()->frames) {
@@ -234,9 +232,10 @@ void writeGroup(std::ostream& out, const fs::path& folder, const EvaluationGroup
 }  // namespace
 
 void printMeasureTable(std::ostream& out, const EvaluationGroup& group) {
-  const std::vector<Method> methods = methodsIn(group);
+  const std::vector<Measure> measures = measuresIn(group);
+  const std::vector<Method> methods = methodsWith(group, measures);
   printHeader(out, "mean", methods);
-  for (const Measure measure : measuresIn(group)) {
+  for (const Measure measure : measures) {
     const MeasureInfo& info = describe(measure);
     const std::optional<double> blurry = meanOver(group.members, Method::kBlurry, measure);
     out << "| " << nameWithUnit(info) << (info.higher_is_better ? "" : ", lower is better") << " |";
@@ -250,7 +249,7 @@ void printMeasureTable(std::ostream& out, const EvaluationGroup& group) {
 }
 
 void printMemberTable(std::ostream& out, const EvaluationGroup& group, Measure measure) {
-  const std::vector<Method> methods = methodsIn(group);
+  const std::vector<Method> methods = methodsWith(group, {measure});
   const int decimals = describe(measure).decimals;
   printHeader(out, "recording", methods);
   for (const Evaluation* member : group.members) {

@@ -23,13 +23,15 @@ struct NamedScene {
 
 constexpr double kBright = 1.0;
 constexpr double kDim = 0.25;
+constexpr double kDimGain = 2.0;
+constexpr double kDimReadNoiseDn = 2.0;
 constexpr std::int64_t kPeriodUs = 40'000;
 
 constexpr std::array<NamedScene, 6> kScenes = {{
-    {"poster-strong", true, TextureKind::kPoster, 0.6, 6, MotionKind::kShake, kBright, 25'000},
+    {"poster-strong", true, TextureKind::kPoster, 0.6, 6, MotionKind::kShake, kBright, 30'000},
     {"poster-mild-dim", true, TextureKind::kPoster, 0.6, 6, MotionKind::kMild, kDim, 25'000},
-    {"sparse-sweep", true, TextureKind::kPoster, 0.1, 2, MotionKind::kPan, kBright, 20'000},
-    {"leaves-strong-dim", false, TextureKind::kNatural, 0.0, 6, MotionKind::kShake, kDim, 25'000},
+    {"sparse-sweep", true, TextureKind::kPoster, 0.1, 2, MotionKind::kPan, kBright, 25'000},
+    {"leaves-strong-dim", false, TextureKind::kNatural, 0.0, 6, MotionKind::kShake, kDim, 30'000},
     {"leaves-mild", false, TextureKind::kNatural, 0.0, 6, MotionKind::kMild, kBright, 20'000},
     {"flat-spin", false, TextureKind::kFlat, 0.0, 2, MotionKind::kSpin, kBright, 20'000},
 }};
@@ -41,6 +43,12 @@ SimulationSettings settingsOf(const NamedScene& scene, int frames, std::uint64_t
   settings.scene.tags = scene.tags;
   settings.scene.illumination = scene.illumination;
   settings.motion.kind = scene.motion;
+  if (scene.illumination < kBright) {
+    // The camera's gain is turned up: twice the DN for the same electrons.
+    settings.sensor.white_dn *= kDimGain;
+    settings.sensor.electrons_per_dn /= kDimGain;
+    settings.sensor.read_noise_dn = kDimReadNoiseDn;
+  }
   settings.sensor.photoreceptor_bright_hz = 300.0;
   settings.sensor.photoreceptor_dark_hz = 30.0;
   settings.timing.frames = frames;

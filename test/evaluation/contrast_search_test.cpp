@@ -10,6 +10,19 @@
 namespace fast_edi {
 namespace {
 
+constexpr double kLambda = 0.2;
+
+/// An event map as of a camera that saw every edge of the image move.
+cv::Mat1f edgesOf(const cv::Mat& image) {
+  cv::Mat1f gx;
+  cv::Mat1f gy;
+  cv::Sobel(image, gx, CV_32F, 1, 0);
+  cv::Sobel(image, gy, CV_32F, 0, 1);
+  cv::Mat1f edges;
+  cv::magnitude(gx, gy, edges);
+  return edges;
+}
+
 TEST(FibonacciSearchTest, FindsAMinimumToItsResolution) {
   for (const double truth : {0.06, 0.2609, 0.5, 0.69}) {
     const Minimum minimum =
@@ -44,48 +57,45 @@ TEST(EventEdgeMapTest, WeightsEventsByDistanceFromTheReference) {
   const std::vector<Event> events = {{1, 0, 1000, true}, {1, 0, 1500, false}, {2, 1, 400, false}};
   const cv::Mat1f map = eventEdgeMap(events, {3, 2}, 1000, 500);
   EXPECT_NEAR(map(0, 1), 1.0 - std::exp(-1.0), 1e-6);
-  EXPECT_NEAR(map(1, 2), -std::exp(-1.2), 1e-6);
+  EXPECT_NEAR(map(1, 2), std::exp(-1.2), 1e-6);
   EXPECT_EQ(map(0, 0), 0.0F);
   EXPECT_THROW(eventEdgeMap(events, {3, 2}, 1000, 0), std::invalid_argument);
 }
 
-TEST(BinaryEdgesTest, MarksAStepAndNothingElse) {
-  cv::Mat step(20, 40, CV_8UC1, cv::Scalar(50));
-  step.colRange(20, 40).setTo(90);
-  const cv::Mat1b edges = binaryEdges(step);
-  EXPECT_EQ(cv::countNonZero(edges), 2 * 20);
-  EXPECT_EQ(edges(10, 19), 1);
-  EXPECT_EQ(edges(10, 20), 1);
-}
-
-TEST(SharpnessEnergyTest, OfAStepIsThatByHand) {
+TEST(TotalVariationTest, OfAStepIsThatByHand) {
   cv::Mat step(20, 40, CV_8UC1, cv::Scalar(50));
   step.colRange(20, 40).setTo(101);
-  const cv::Mat1b edges = binaryEdges(step);
-  // 20 rows rise by 0.2 of white; 40 edge pixels agree.
-  EXPECT_NEAR(sharpnessEnergy(step, edges, 0.5), 0.5 * 20 * 0.2 - 40.0, 1e-4);
-  EXPECT_THROW(sharpnessEnergy(step, cv::Mat1b(3, 3), 0.5), std::invalid_argument);
+  EXPECT_NEAR(totalVariation(step), 20 * 51.0, 1e-3);
 }
 
-TEST(SearchContrastTest, FindsWhatRestoresTheImage) {
-  // A blurry frame whose log difference from the truth is known: "deblurring" by c adds c / truth
-  // of that difference, so that c = truth restores the image and a larger one overshoots.
+TEST(SharpnessEnergyTest, FallsWithEdgesWhereEventsAreAndRisesWithVariation) {
+  const cv::Mat sharp = texturedImage();
+  const cv::Mat blurry = blurred(sharp, 3.0);
+  const SharpnessEnergy energy(blurry, edgesOf(sharp), kLambda);
+  EXPECT_LT(energy(sharp), energy(blurry));
+  EXPECT_GT(energy(withNoise(sharp, 30.0)), energy(sharp));
+}
+
+TEST(SharpnessEnergyTest, OfTheBlurryFrameWithoutEventsIsLambda) {
+  const cv::Mat blurry = texturedImage();
+  EXPECT_NEAR(SharpnessEnergy(blurry, cv::Mat1f(blurry.size(), 0.0F), kLambda)(blurry), kLambda,
+              1e-9);
+  const cv::Mat flat(20, 20, CV_8UC1, cv::Scalar(9));
+  EXPECT_EQ(SharpnessEnergy(flat, cv::Mat1f(flat.size(), 0.0F), kLambda)(flat), 0.0);
+  EXPECT_THROW(SharpnessEnergy(flat, cv::Mat1f(3, 3, 0.0F), kLambda), std::invalid_argument);
+}
+
+TEST(SearchContrastTest, FindsWhatIsSharpest) {
+  // An image that blurs as the contrast leaves its true value to either side.
   constexpr double kTruth = 0.3;
-  cv::Mat1f sharp;
-  texturedImage().convertTo(sharp, CV_32F);
-  cv::Mat1f smooth;
-  cv::GaussianBlur(sharp, smooth, {}, 3.0);
-  cv::Mat1f ratio;
-  cv::log(sharp / smooth, ratio);
-  const cv::Mat1b edges = binaryEdges(sharp);
+  constexpr double kSigmaPerContrast = 40.0;
+  const cv::Mat sharp = texturedImage();
   const ContrastSearchResult result = searchContrast(
       [&](double contrast) -> cv::Mat {
-        cv::Mat1f gain;
-        cv::exp(ratio * (contrast / kTruth), gain);
-        return smooth.mul(gain);
+        return blurred(sharp, 0.01 + kSigmaPerContrast * std::abs(contrast - kTruth));
       },
-      edges);
-  EXPECT_NEAR(result.contrast, kTruth, 0.1);
+      SharpnessEnergy(blurred(sharp, 3.0), edgesOf(sharp), kLambda));
+  EXPECT_NEAR(result.contrast, kTruth, 0.03);
   EXPECT_GT(result.evaluations, 5);
 }
 

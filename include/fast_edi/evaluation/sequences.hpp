@@ -16,7 +16,8 @@
 /// Textures of the second half (dead leaves; slow shading) are of kinds that the first half does
 /// not contain. All of them: a DAVIS346 with libcaer's biases, threshold mismatch 8 %, refractory
 /// period 3.4 us, leak 0.1 Hz, shot noise 0.5 (bright) to 5 Hz (dark), photoreceptor 300 (bright)
-/// to 30 Hz (dark), frames with 1.5 DN read noise and shot noise.
+/// to 30 Hz (dark), frames every 40 ms with 1.5 DN read noise and shot noise. Exposures last 20 to
+/// 30 ms. Dim: a quarter of the light at twice the gain, 2 DN read noise.
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,147 @@
+#include "fast_edi/evaluation/report.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "evaluation/test_images.hpp"
+#include "fast_edi/evaluation/plot.hpp"
+
+namespace fast_edi {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+FrameFigures frameWith(double blurry_psnr, double plain_psnr) {
+  FrameFigures frame;
+  frame.scores[indexOf(Method::kBlurry)][indexOf(Measure::kPsnr)] = blurry_psnr;
+  frame.scores[indexOf(Method::kPlain)][indexOf(Measure::kPsnr)] = plain_psnr;
+  frame.scores[indexOf(Method::kBlurry)][indexOf(Measure::kOrb)] = 40.0;
+  frame.scores[indexOf(Method::kPlain)][indexOf(Measure::kOrb)] = 50.0;
+  frame.runtime_ms[indexOf(Method::kPlain)] = blurry_psnr;
+  return frame;
+}
+
+Evaluation evaluationWith(const std::string& name, const std::vector<FrameFigures>& frames) {
+  Evaluation evaluation;
+  evaluation.name = name;
+  evaluation.frames = frames;
+  evaluation.example[indexOf(Method::kBlurry)] = texturedImage();
+  evaluation.example[indexOf(Method::kPlain)] = texturedImage();
+  return evaluation;
+}
+
+/// A folder of its own, gone afterwards.
+class ReportTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("fast_edi_report_test_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static std::string contentOf(const fs::path& path) {
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  fs::path folder_;
+  Evaluation one_ = evaluationWith("one", {frameWith(20.0, 26.0), frameWith(22.0, 28.0)});
+  Evaluation two_ = evaluationWith("two", {frameWith(30.0, 31.0)});
+};
+
+TEST_F(ReportTest, MeansCountEachMemberTheSame) {
+  EXPECT_EQ(one_.mean(Method::kPlain, Measure::kPsnr), 27.0);
+  EXPECT_EQ(meanOver({&one_, &two_}, Method::kPlain, Measure::kPsnr), 29.0);
+  EXPECT_FALSE(meanOver({&one_, &two_}, Method::kOurs, Measure::kPsnr).has_value());
+  EXPECT_EQ(one_.medianRuntimeMs(Method::kPlain), 22.0);
+  EXPECT_EQ(one_.maxRuntimeMs(Method::kPlain), 22.0);
+}
+
+TEST_F(ReportTest, TablesHaveWhatWasMeasuredAndNothingElse) {
+  std::ostringstream table;
+  printMeasureTable(table, {"both", {&one_, &two_}});
+  EXPECT_EQ(table.str(),
+            "| mean | blurry input | plain EDI |\n"
+            "|---|---:|---:|\n"
+            "| PSNR [dB] | 25.50 | 29.00 |\n"
+            "| inliers ORB | 40.0 | 50.0 (+25 %) |\n");
+  std::ostringstream members;
+  printMemberTable(members, {"both", {&one_, &two_}}, Measure::kPsnr);
+  EXPECT_EQ(members.str(),
+            "| recording | blurry input | plain EDI |\n"
+            "|---|---:|---:|\n"
+            "| one | 21.00 | 27.00 |\n"
+            "| two | 30.00 | 31.00 |\n"
+            "| mean | 25.50 | 29.00 |\n");
+}
+
+TEST_F(ReportTest, ThePageNamesOnlyPicturesThatExist) {
+  one_.left_out["no event stream"] = 2;
+  const std::string page = writeReport(folder_.string(), {"A title", "the command", {"a note"}},
+                                       {{"first half", {&one_}}, {"second half", {&one_, &two_}}});
+  const std::string text = contentOf(page);
+  EXPECT_THAT(text, HasSubstr("# A title"));
+  EXPECT_THAT(text, HasSubstr("the command"));
+  EXPECT_THAT(text, HasSubstr("- a note"));
+  EXPECT_THAT(text, HasSubstr("2 left out (no event stream)"));
+  int pictures = 0;
+  for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
+    const std::size_t end = text.find(')', at);
+    const fs::path picture = folder_ / text.substr(at + 2, end - at - 2);
+    EXPECT_FALSE(cv::imread(picture.string()).empty()) << picture;
+    ++pictures;
+  }
+  EXPECT_EQ(pictures, 2 * 2 + 3);
+  EXPECT_THAT(contentOf(folder_ / "figures.csv"), HasSubstr("first half,one,0,"));
+}
+
+TEST_F(ReportTest, NamesAFolderThatCannotBeMade) {
+  std::ofstream(folder_.string()) << "a file in the way";
+  EXPECT_THAT(
+      [&] {
+        writeReport(folder_.string(), {}, {{"all", {&one_}}});
+      },
+      testing::ThrowsMessage<std::runtime_error>(HasSubstr(folder_.string())));
+}
+
+TEST(PlotTest, DrawsInSeriesColoursAndLeavesGaps) {
+  const cv::Mat empty = linePlot({"t", "x", "y"}, {{"a", {std::nullopt, std::nullopt}}});
+  const cv::Mat drawn = linePlot({"t", "x", "y"}, {{"a", {1.0, 2.0}}});
+  ASSERT_EQ(empty.size(), drawn.size());
+  EXPECT_GT(cv::norm(empty, drawn, cv::NORM_L1), 0.0);
+  const cv::Mat bars = barPlot({"t", "", "y"}, {"g", "h"}, {{"a", {1.0, 3.0}}, {"b", {2.0, {}}}});
+  EXPECT_EQ(bars.type(), CV_8UC3);
+}
+
+TEST(PlotTest, AHigherBarIsHigher) {
+  const auto darkRows = [](double value) {
+    const cv::Mat plot = barPlot({"", "", ""}, {""}, {{"", {value}}, {"", {10.0}}, {"", {0.0}}});
+    cv::Mat grey;
+    cv::cvtColor(plot, grey, cv::COLOR_BGR2GRAY);
+    // Through the middle of the first of three bars.
+    return cv::countNonZero(grey.col(80 + 900 / 4) < 200);
+  };
+  EXPECT_GT(darkRows(9.0), darkRows(3.0) + 100);
+}
+
+TEST(PictureGridTest, PlacesPicturesAndLeavesOutEmptyOnes) {
+  const cv::Mat picture(10, 20, CV_8UC1, cv::Scalar(77));
+  const cv::Mat grid = pictureGrid({{"", picture}, {"", cv::Mat()}, {"", picture}}, 2, 3);
+  EXPECT_GE(grid.cols, 2 * 60);
+  EXPECT_LT(grid.rows, 2 * 30);
+  cv::Mat grey;
+  cv::cvtColor(grid, grey, cv::COLOR_BGR2GRAY);
+  EXPECT_EQ(cv::countNonZero(grey == 77), 2 * 30 * 60);
+}
+
+}  // namespace
+}  // namespace fast_edi
