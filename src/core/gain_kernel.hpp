@@ -1,5 +1,5 @@
 /// \file
-/// From every pixel's running result to its gain, and back to the result of no event.
+/// From every pixel's two half integrals to its gain.
 #pragma once
 
 #include <cstddef>
@@ -8,17 +8,30 @@
 
 namespace fast_edi {
 
-/// Clocks of a window's ends, counted from the base instant.
-struct WindowClock {
-  double start;
-  double end;
+/// Clocks of an interval's ends, counted from the base instant of its sums.
+struct IntervalClock {
+  double start = 0.0;
+  double end = 0.0;
+
+  double length() const { return end - start; }
 };
 
-/// gain[i] = T v_i(f) / integral_i with integral = sum + v end - start and T = end - start, kept
-/// within [DoubleIntegral::kMinGain, kMaxGain]; 1 where the integral is not a positive number or
-/// the ratio not a number. Resets sums[i] to {0, 1} in the same sweep. \return the number of pixels
-/// that got 1 for the latter reason
-std::size_t takeGains(PixelSums* sums, const double* reference_value, std::size_t pixels,
-                      const WindowClock& clock, float* gain);
+/// The results of all pixels over one interval: integral_i = sum_i + value_i clock.end -
+/// clock.start.
+struct IntervalSums {
+  PixelSums* sums;
+  IntervalClock clock;
+};
+
+/// Gains from the integral A over [start, f), relative to the start, and B over [f, end), relative
+/// to the reference time f:
+///
+///     gain = 1 / E(f) = T v(f) / (A + v(f) B),   T = length(A) + length(B)
+///
+/// kept within [DoubleIntegral::kMinGain, kMaxGain]; 1 where the denominator is not a positive
+/// number or the ratio not a number. Resets all sums to those of no event in the same sweep.
+/// \return the number of pixels that got 1 for the latter reason
+std::size_t takeGains(const IntervalSums& before, const IntervalSums& after, std::size_t pixels,
+                      float* gain);
 
 }  // namespace fast_edi
