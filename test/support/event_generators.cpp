@@ -193,13 +193,13 @@ WireEvents wireView(const std::vector<std::uint8_t>& bytes) {
   return {bytes.data(), bytes.size() / kWireEventBytes};
 }
 
-void shiftStamps(std::int64_t by_ns, std::vector<std::uint8_t>& bytes) {
+void shiftStamps(std::int64_t by_ns, std::uint8_t* records, std::size_t count) {
   constexpr std::size_t kSecondsOffset = 4;
   constexpr std::size_t kNanosecondsOffset = 8;
   const auto by_sec = static_cast<std::uint32_t>(by_ns / kNanosecondsPerSecond);
   const auto by_nsec = static_cast<std::uint32_t>(by_ns % kNanosecondsPerSecond);
-  for (std::size_t i = 0; i + kWireEventBytes <= bytes.size(); i += kWireEventBytes) {
-    std::uint8_t* record = bytes.data() + i;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint8_t* record = records + i * kWireEventBytes;
     std::uint32_t sec, nsec;
     std::memcpy(&sec, record + kSecondsOffset, sizeof sec);
     std::memcpy(&nsec, record + kNanosecondsOffset, sizeof nsec);
@@ -212,6 +212,10 @@ void shiftStamps(std::int64_t by_ns, std::vector<std::uint8_t>& bytes) {
     std::memcpy(record + kSecondsOffset, &sec, sizeof sec);
     std::memcpy(record + kNanosecondsOffset, &nsec, sizeof nsec);
   }
+}
+
+void shiftStamps(std::int64_t by_ns, std::vector<std::uint8_t>& bytes) {
+  shiftStamps(by_ns, bytes.data(), bytes.size() / kWireEventBytes);
 }
 
 std::vector<std::uint8_t> makeGreyImage(SensorSize size, std::uint64_t seed) {

@@ -41,6 +41,7 @@ std::vector<std::uint8_t> toWire(const std::vector<Event>& events);
 WireEvents wireView(const std::vector<std::uint8_t>& bytes);
 
 /// Moves the stamps of all records on. \pre 0 <= by_ns, stamps stay below 2^32 s
+void shiftStamps(std::int64_t by_ns, std::uint8_t* records, std::size_t count);
 void shiftStamps(std::int64_t by_ns, std::vector<std::uint8_t>& bytes);
 
 /// A reproducible grey image with levels in 20..219 (no saturation at moderate gains).
