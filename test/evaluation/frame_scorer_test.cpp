@@ -1,0 +1,79 @@
+#include "fast_edi/evaluation/frame_scorer.hpp"
+
+#include <gmock/gmock.h>
+
+#include "evaluation/test_images.hpp"
+#include "fast_edi/evaluation/capability.hpp"
+#include "fast_edi/evaluation/image_metrics.hpp"
+
+namespace fast_edi {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+TEST(FrameScorerTest, SaysWhatItCannotMeasure) {
+  ScorerOptions options;
+  options.brisque_model_file = "/nonexistent/model.yml";
+  const FrameScorer scorer(options);
+  EXPECT_THAT(scorer.missing(), Contains(HasSubstr("BRISQUE")));
+  EXPECT_THAT(scorer.missing(), Contains("SSEQ: no model folder was given"));
+  FeatureMemory memory;
+  const Scores scores = scorer.score(texturedImage(), cv::Mat(), memory);
+  EXPECT_FALSE(scores[indexOf(Measure::kBrisque)].has_value());
+  EXPECT_FALSE(scores[indexOf(Measure::kSseq)].has_value());
+  EXPECT_FALSE(scores[indexOf(Measure::kPsnr)].has_value()) << "no truth was given";
+  EXPECT_TRUE(scores[indexOf(Measure::kPiqe)].has_value());
+}
+
+TEST(FrameScorerTest, AModelFolderThatWasGivenMustBeReadable) {
+  ScorerOptions options;
+  options.sseq_folder = "/nonexistent";
+  if (isAvailable(OptionalLibrary::kLibsvm)) {
+    EXPECT_THROW(FrameScorer{options}, std::runtime_error);
+  } else {
+    EXPECT_THAT(FrameScorer(options).missing(), Contains(HasSubstr("SSEQ needs libsvm")));
+  }
+}
+
+TEST(FrameScorerTest, FullReferenceOnlyMeasuresNothingElse) {
+  ScorerOptions options;
+  options.full_reference_only = true;
+  const FrameScorer scorer(options);
+  const cv::Mat truth = texturedImage();
+  const cv::Mat image = withNoise(truth, 5.0);
+  FeatureMemory memory;
+  const Scores scores = scorer.score(image, truth, memory);
+  EXPECT_EQ(scores[indexOf(Measure::kPsnr)], psnr(image, truth));
+  EXPECT_EQ(scores[indexOf(Measure::kSsim)].has_value(),
+            isAvailable(OptionalLibrary::kOpencvQuality));
+  for (std::size_t i = indexOf(Measure::kPiqe); i < kMeasureCount; ++i) {
+    EXPECT_FALSE(scores[i].has_value()) << describe(static_cast<Measure>(i)).name;
+  }
+}
+
+TEST(FrameScorerTest, FeaturesAreMatchedWithTheFrameBeforeIfThereIsOne) {
+  const FrameScorer scorer({});
+  const cv::Mat image = texturedImage({346, 260});
+  FeatureMemory memory;
+  EXPECT_FALSE(scorer.score(image, cv::Mat(), memory)[indexOf(Measure::kOrb)].has_value());
+  const std::optional<double> second =
+      scorer.score(image, cv::Mat(), memory)[indexOf(Measure::kOrb)];
+  ASSERT_TRUE(second.has_value());
+  EXPECT_GT(*second, 100.0);
+  memory.clear();
+  EXPECT_FALSE(scorer.score(image, cv::Mat(), memory)[indexOf(Measure::kOrb)].has_value());
+}
+
+TEST(MeasureTest, EachHasANameOfItsOwn) {
+  for (std::size_t i = 0; i < kMeasureCount; ++i) {
+    for (std::size_t j = i + 1; j < kMeasureCount; ++j) {
+      EXPECT_STRNE(describe(static_cast<Measure>(i)).name, describe(static_cast<Measure>(j)).name);
+    }
+  }
+  EXPECT_STREQ(describe(Measure::kOrb).name, "inliers ORB");
+  EXPECT_FALSE(describe(Measure::kPiqe).higher_is_better);
+}
+
+}  // namespace
+}  // namespace fast_edi
