@@ -11,7 +11,7 @@ constexpr std::int64_t kBaseQuantum_ns = 1 << 19;
 
 /// Running sums stay this far from the ends of the expected interval: what the expectation may be
 /// off without the events having to be walked again.
-constexpr std::int64_t kExpectationMargin_ns = 20 * kNanosecondsPerMicrosecond;
+constexpr std::int64_t kExpectationMargin_ns = 50 * kNanosecondsPerMicrosecond;
 
 /// Floor to a multiple of a positive divisor.
 std::int64_t floorMultiple(std::int64_t value, std::int64_t divisor) {
