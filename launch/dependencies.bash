@@ -25,6 +25,7 @@ FAST_EDI_DEBIAN_RUN=(
 )
 FAST_EDI_DEBIAN_TEST=(
   python3-rostest libgtest-dev libgmock-dev catkin-lint clang-tidy clang-format libxml2-utils
+  shellcheck
 )
 
 # The same on Ubuntu 20.04 with the ROS Noetic packages.
@@ -41,7 +42,7 @@ FAST_EDI_NOETIC_RUN=(
 )
 FAST_EDI_NOETIC_TEST=(
   ros-noetic-rostest libgtest-dev libgmock-dev python3-catkin-lint clang-tidy clang-format
-  libxml2-utils
+  libxml2-utils shellcheck
 )
 
 # Runs a command as root. Asks for a password only where somebody can type one.
