@@ -3,11 +3,15 @@
 /// the true sharp frames beside the blurry ones.
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include <sensor_msgs/CameraInfo.h>
@@ -196,7 +200,7 @@ class Recording {
   std::multimap<std::int64_t, std::function<void()>> waiting_;  ///< by record time
 };
 
-/// What the driver's sensor never does, usual behaviour, and a hot, dim or badly biased sensor.
+/// Nothing, what is usual, and what a warm or slowly biased sensor does.
 void applyNoisePreset(const std::string& name, SensorSettings& sensor) {
   const auto size = sensor.size;
   if (name == "none") {
@@ -415,10 +419,18 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  constexpr int kFailure = 1;
+  constexpr int kUsageError = 2;
   try {
     return run(argc, argv);
+  } catch (const po::error& error) {
+    std::cerr << "simulate_davis: " << error.what() << "; see --help\n";
+    return kUsageError;
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "simulate_davis: " << error.what() << "; see --help\n";
+    return kUsageError;
   } catch (const std::exception& error) {
     std::cerr << "simulate_davis: " << error.what() << '\n';
-    return 1;
+    return kFailure;
   }
 }
