@@ -230,10 +230,10 @@ class InvariantChecker {
   std::set<const void*> owners_;
 };
 
-/// A session with resets of the clocks, lost, repeated and odd messages, and long delays.
-std::vector<Arrival> badSession(Random& random) {
-  std::vector<Arrival> session;
-  std::int64_t session_ns = 0;
+/// A run with resets of the clocks, lost, repeated and odd messages, and long delays.
+std::vector<Arrival> badRun(Random& random) {
+  std::vector<Arrival> run;
+  std::int64_t run_ns = 0;
   std::uint32_t sequence = 1;
   const int parts = static_cast<int>(uniform(random, 1, 4));
   for (int part = 0; part < parts; ++part) {
@@ -278,7 +278,7 @@ std::vector<Arrival> badSession(Random& random) {
                        d.addEvents(testing::wireView(bytes), size, 0, now_ns);
                      }});
     }
-    std::int64_t part_end_ns = session_ns;
+    std::int64_t part_end_ns = run_ns;
     std::vector<std::vector<Arrival>> topics{events, frames, exposures};
     for (auto& topic : topics) {
       std::vector<Arrival> kept;
@@ -286,7 +286,7 @@ std::vector<Arrival> badSession(Random& random) {
         const int copies = chance(random, 5) ? 0 : chance(random, 3) ? 2 : 1;
         for (int i = 0; i < copies; ++i) {
           kept.push_back(arrival);
-          kept.back().now_ns += session_ns - start_ns;
+          kept.back().now_ns += run_ns - start_ns;
         }
       }
       delay(kept, random, uniform(random, 0, 150) * kMs);
@@ -299,11 +299,11 @@ std::vector<Arrival> badSession(Random& random) {
       topic = kept;
     }
     for (const Arrival& arrival : merge(topics, random)) {
-      session.push_back(arrival);
+      run.push_back(arrival);
     }
-    session_ns = part_end_ns;
+    run_ns = part_end_ns;
   }
-  return session;
+  return run;
 }
 
 TEST(DeblurrerSchedule, ItsPromisesHoldWhateverComes) {
@@ -323,7 +323,7 @@ TEST(DeblurrerSchedule, ItsPromisesHoldWhateverComes) {
     Deblurrer deblurrer(parameters, sink);
     InvariantChecker invariants(deblurrer, sink, parameters.max_buffered_events);
 
-    for (const Arrival& arrival : badSession(random)) {
+    for (const Arrival& arrival : badRun(random)) {
       if (chance(random, 20)) {
         deblurrer.advance(arrival.now_ns);
       }
@@ -346,7 +346,7 @@ TEST(DeblurrerSchedule, ItsPromisesHoldWhateverComes) {
       passed[i] += deblurrer.counters().frames_passed[i];
     }
   }
-  // The sessions reached what they are meant to reach.
+  // The runs reached what they are meant to reach.
   EXPECT_GT(deblurred, 500u);
   for (const auto& [reason, count] : passed) {
     EXPECT_GT(count, 0u) << toString(static_cast<PassReason>(reason));
@@ -359,7 +359,7 @@ TEST(DeblurrerSchedule, TheSameCallsGiveTheSameImages) {
     Random random(7);
     testing::RecordingSink sink;
     Deblurrer deblurrer(scheduleParameters(), sink);
-    for (const Arrival& arrival : badSession(random)) {
+    for (const Arrival& arrival : badRun(random)) {
       arrival.deliver(deblurrer, arrival.now_ns);
     }
     deblurrer.finish();
