@@ -30,6 +30,17 @@ bool BagReader::next(BagMessage& message) {
   return false;
 }
 
+ros::Duration BagReader::duration() const {
+  if (index_.entries.empty()) {
+    return {};
+  }
+  const auto time = [](const BagIndexEntry& entry) {
+    return ros::Time(static_cast<std::uint32_t>(entry.time >> 32),
+                     static_cast<std::uint32_t>(entry.time));
+  };
+  return time(index_.entries.back()) - time(index_.entries.front());
+}
+
 std::string BagReader::compression() const {
   return index_.chunks.empty() ? "none" : index_.chunks.front().compression;
 }

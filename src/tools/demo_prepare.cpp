@@ -2,10 +2,12 @@
 /// `demo_prepare`: looks at a recording and its parameters before `launch/demo` plays it, and says
 /// how the launch file is to be called.
 
+#include <cmath>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,12 +21,13 @@
 
 namespace {
 
+namespace fs = std::filesystem;
 namespace po = boost::program_options;
 
 struct Arguments {
   std::string bag;
   std::string config;
-  std::string overrides_file;
+  std::string parameters_file;
   fast_edi::TopicNames topics;
   std::vector<std::string> overrides;
 };
@@ -36,8 +39,8 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   visible.add_options()("help,h", "print this")("in", po::value(&arguments.bag)->required(),
                                                 "recording")(
       "config", po::value(&arguments.config)->required(), "YAML file with the parameters")(
-      "overrides-out", po::value(&arguments.overrides_file)->required(),
-      "YAML file to write the given parameters to, for roslaunch")(
+      "parameters-out", po::value(&arguments.parameters_file)->required(),
+      "YAML file to write all parameters to, those given as name:=value included")(
       "events", po::value(&topics.events)->default_value(topics.events))(
       "image", po::value(&topics.image)->default_value(topics.image))(
       "exposure", po::value(&topics.exposure)->default_value(topics.exposure))(
@@ -49,26 +52,39 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   po::variables_map values;
   po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
   if (values.count("help") > 0) {
-    std::cout << "Usage: demo_prepare --in BAG --config YAML --overrides-out YAML [options] "
-                 "[parameter:=value ...]\n\n"
-                 "Checks a recording and parameters, finds the topics where they have other names "
-                 "than the\ndriver's, and prints launch/demo.launch's arguments, one on each "
-                 "line.\n\n"
-              << visible;
+    std::cout
+        << "Usage: demo_prepare --in BAG --config YAML --parameters-out YAML [options] "
+           "[parameter:=value ...]\n\n"
+           "Checks a recording and parameters, finds the topics where they have other names "
+           "than the\ndriver's, and prints its length [s] and launch/demo.launch's arguments, one "
+           "on each line.\n\n"
+        << visible;
     return false;
   }
   po::notify(values);
   return true;
 }
 
-void writeOverrides(const Arguments& arguments) {
-  YAML::Node root(YAML::NodeType::Map);
+/// One file with everything, since roslaunch would replace maps (`biases`) instead of merging them.
+void writeParameters(const Arguments& arguments) {
+  YAML::Node root = YAML::LoadFile(arguments.config);
   fast_edi::applyOverrides(root, arguments.overrides);
-  std::ofstream file(arguments.overrides_file);
+  const std::string response = root["response_file"].as<std::string>("");
+  if (!response.empty()) {
+    // It is relative to the file it was named in, which is no longer the one that is read.
+    root["response_file"] = (fs::absolute(arguments.config).parent_path() / response).string();
+  }
+  std::ofstream file(arguments.parameters_file);
   file << root << "\n";
   if (!file.flush()) {
-    throw std::runtime_error("cannot write " + arguments.overrides_file);
+    throw std::runtime_error("cannot write " + arguments.parameters_file);
   }
+}
+
+/// Where the nodelet publishes, beside the frames, as roslaunch wants it: without the first slash.
+std::string outputNamespace(const fast_edi::TopicNames& topics) {
+  const std::string name = fast_edi::topicNamespace(topics.image);
+  return name.empty() ? "/" : name.substr(name.front() == '/' ? 1 : 0);
 }
 
 void run(const Arguments& arguments) {
@@ -89,20 +105,15 @@ void run(const Arguments& arguments) {
   if (!faults.empty()) {
     throw fast_edi::BagError(arguments.bag + ": " + faults);
   }
-  writeOverrides(arguments);
-  std::set<std::string> recorded;
-  for (const auto& entry : reader.connections()) {
-    recorded.insert(entry.second.topic);
-  }
-  std::cout << "events:=" << topics.events << "\n"
+  writeParameters(arguments);
+  std::cout << "seconds " << std::lround(std::ceil(reader.duration().toSec())) << "\n"
+            << "namespace:=" << outputNamespace(topics) << "\n"
+            << "events:=" << topics.events << "\n"
             << "image:=" << topics.image << "\n"
             << "exposure:=" << topics.exposure << "\n"
-            << "camera_info:=" << topics.cameraInfo() << "\n"
-            << "topics:=" << topics.outputImage() << " " << topics.outputCameraInfo();
-  for (const std::string& topic : recorded) {
-    std::cout << " " << topic;
-  }
-  std::cout << "\n";
+            << "camera_info:=" << topics.cameraInfo() << "\n";
+  std::cerr << arguments.bag << ": " << reader.messageCount() << " messages in "
+            << reader.duration() << " s\n";
 }
 
 }  // namespace

@@ -5,14 +5,17 @@
 /// and checks that what was published live is what comes out offline.
 
 #include <algorithm>
+#include <cstdint>
 #include <deque>
 #include <exception>
 #include <iomanip>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <cv_bridge/cv_bridge.h>
@@ -42,10 +45,13 @@ constexpr std::size_t kSheetRows = 4;
 /// A frame is settled once this many more have come: by then its output and truth are there too.
 constexpr std::size_t kSettleAfterFrames = 16;
 constexpr double kNanosecondsInMillisecond = 1e6;
+constexpr int kNameWidth = 28;
 constexpr double kNoticeableGain = 1.05;
+constexpr char kDiagnosticsTopic[] = "/diagnostics";
 
 struct Arguments {
   std::string bag;
+  std::string live;
   std::string config;
   std::string picture;
   std::string truth = "/dvs/ground_truth/image_raw";
@@ -79,11 +85,6 @@ struct ViewTotals {
       psnr_db += *view.psnr_db;
     }
   }
-};
-
-struct LiveImage {
-  sensor_msgs::ImageConstPtr message;
-  ros::Time record_time;
 };
 
 struct PendingFrame {
@@ -120,13 +121,72 @@ std::string text(double value, int digits) {
   return out.str();
 }
 
+/// What was recorded of the nodelet, read as far as it is asked for.
+class LiveRecording {
+ public:
+  LiveRecording(const std::string& path, std::string image_topic)
+      : reader_(path), image_topic_(std::move(image_topic)) {}
+
+  /// The image with that stamp, if it was published. Earlier ones are forgotten.
+  sensor_msgs::ImageConstPtr take(const ros::Time& stamp) {
+    while (images_.count(stamp) == 0 && readOne()) {
+    }
+    const auto found = images_.find(stamp);
+    if (found == images_.end()) {
+      return nullptr;
+    }
+    const sensor_msgs::ImageConstPtr image = found->second;
+    images_.erase(images_.begin(), std::next(found));
+    return image;
+  }
+
+  void readToEnd() {
+    while (readOne()) {
+      images_.clear();
+    }
+  }
+
+  std::size_t imageCount() const { return image_count_; }
+  /// The last value that was reported under \p key, if any.
+  std::optional<std::string> diagnostic(const std::string& key) const {
+    const auto found = diagnostics_.find(key);
+    return found == diagnostics_.end() ? std::nullopt : std::make_optional(found->second);
+  }
+
+ private:
+  bool readOne() {
+    BagMessage message;
+    if (!reader_.next(message)) {
+      return false;
+    }
+    if (message.connection->topic == image_topic_) {
+      const auto image = deserialise<sensor_msgs::Image>(message);
+      images_[image->header.stamp] = image;
+      ++image_count_;
+    } else if (message.connection->topic == kDiagnosticsTopic) {
+      for (const auto& status : deserialise<diagnostic_msgs::DiagnosticArray>(message)->status) {
+        for (const auto& value : status.values) {
+          diagnostics_[value.key] = value.value;
+        }
+      }
+    }
+    return true;
+  }
+
+  BagReader reader_;
+  const std::string image_topic_;
+  std::map<ros::Time, sensor_msgs::ImageConstPtr> images_;
+  std::map<std::string, std::string> diagnostics_;
+  std::size_t image_count_ = 0;
+};
+
 /// Collects frames, figures and the rows of the sheet from a recording.
 class Report {
  public:
   Report(const Arguments& arguments, const LoadedParameters& parameters, const BagReader& reader)
       : arguments_(arguments),
         topics_(arguments.topics),
-        output_topic_(topics_.outputImage()),
+        live_(arguments.live, topics_.outputImage()),
         time_offset_ns_(parameters.deblur.time_offset_ns),
         pipeline_(topics_, parameters) {
     for (const auto& entry : reader.connections()) {
@@ -138,15 +198,9 @@ class Report {
     const std::string& topic = message.connection->topic;
     if (topic == topics_.events) {
       addEvents(message);
-    } else if (topic == output_topic_) {
-      const auto image = deserialise<sensor_msgs::Image>(message);
-      live_[image->header.stamp] = {image, message.time};
-      ++frames_out_;
     } else if (topic == arguments_.truth) {
       const auto image = deserialise<sensor_msgs::Image>(message);
       truth_[image->header.stamp] = image;
-    } else if (topic == "/diagnostics") {
-      addDiagnostics(*deserialise<diagnostic_msgs::DiagnosticArray>(message));
     }
     pipeline_.add(message);
     takeOutputs();
@@ -161,15 +215,19 @@ class Report {
     while (!pending_.empty()) {
       settleOldest();
     }
+    live_.readToEnd();
   }
 
-  bool hasOutput() const { return frames_out_ > 0; }
+  bool hasOutput() const { return live_.imageCount() > 0; }
   bool lostFrames() const { return frames_lost_ > 0; }
 
   void print(std::ostream& out) const;
   cv::Mat draw() const;
 
  private:
+  void printLatency(std::ostream& out, const std::string& name, const std::string& key,
+                    const std::string& remark) const;
+
   void addEvents(const BagMessage& message) {
     const auto array = deserialise<EventArrayView>(message);
     const WireEvents events = array->events();
@@ -179,14 +237,6 @@ class Report {
     }
     first_event_ns_ = first_event_ns_.value_or(decodeWireEvent(events.record(0)).t_ns);
     last_event_ns_ = decodeWireEvent(events.record(events.count - 1)).t_ns;
-  }
-
-  void addDiagnostics(const diagnostic_msgs::DiagnosticArray& array) {
-    for (const auto& status : array.status) {
-      for (const auto& value : status.values) {
-        diagnostics_[value.key] = value.value;
-      }
-    }
   }
 
   void takeOutputs() {
@@ -226,26 +276,22 @@ class Report {
 
   const Arguments& arguments_;
   const TopicNames& topics_;
-  const std::string output_topic_;
+  LiveRecording live_;
   const std::int64_t time_offset_ns_;
   BagPipeline pipeline_;
   ComparisonView view_;
   TagDetector detector_;
 
   std::deque<PendingFrame> pending_;
-  std::map<ros::Time, LiveImage> live_;
   std::map<ros::Time, sensor_msgs::ImageConstPtr> truth_;
-  std::map<std::string, std::string> diagnostics_;
 
   std::uint64_t frames_expected_ = 0;
   std::size_t frames_seen_ = 0;
-  std::size_t frames_out_ = 0;
   std::size_t frames_lost_ = 0;
   std::size_t frames_as_offline_ = 0;
   std::size_t rows_chosen_ = 0;
   std::optional<std::int64_t> first_event_ns_;
   std::int64_t last_event_ns_ = 0;
-  std::vector<double> latencies_ms_;
   ViewTotals before_;
   ViewTotals after_;
   ViewTotals true_;
@@ -274,17 +320,15 @@ void Report::settleOldest() {
   pending_.pop_front();
   const ros::Time stamp = frame.offline.image->header.stamp;
   const MessageFrame& input = messageFrame(frame.offline.frame.input);
-  const auto live = live_.find(stamp);
-  if (live == live_.end()) {
+  const sensor_msgs::ImageConstPtr live = live_.take(stamp);
+  if (!live) {
     ++frames_lost_;
   } else {
-    frames_as_offline_ += live->second.message->data == frame.offline.image->data ? 1 : 0;
-    latencies_ms_.push_back(milliseconds(
-        static_cast<std::int64_t>(live->second.record_time.toNSec()) - input.arrival_ns));
+    frames_as_offline_ += live->data == frame.offline.image->data ? 1 : 0;
     if (frame.offline.frame.input.supported) {
       const cv::Mat truth = truthAt(stamp);
       const View before = look(toMono8(*input.message), truth);
-      const View after = look(toMono8(*live->second.message), truth);
+      const View after = look(toMono8(*live), truth);
       before_.add(before);
       after_.add(after);
       View true_view;
@@ -297,7 +341,6 @@ void Report::settleOldest() {
       }
     }
   }
-  live_.erase(live_.begin(), live_.upper_bound(stamp));
   truth_.erase(truth_.begin(), truth_.upper_bound(stamp));
 }
 
@@ -359,7 +402,6 @@ cv::Mat Report::draw() const {
 /// Name, before, after, truth.
 void printLine(std::ostream& out, const std::string& name, const std::string& before,
                const std::string& after, const std::string& truth) {
-  constexpr int kNameWidth = 28;
   constexpr int kColumnWidth = 12;
   out << std::left << std::setw(kNameWidth) << name << std::right << std::setw(kColumnWidth)
       << before << std::setw(kColumnWidth) << after << std::setw(kColumnWidth) << truth << "\n";
@@ -369,10 +411,20 @@ std::string meanText(double sum, std::size_t count, int digits) {
   return count == 0 ? "-" : text(sum / static_cast<double>(count), digits);
 }
 
+void Report::printLatency(std::ostream& out, const std::string& name, const std::string& key,
+                          const std::string& remark) const {
+  const std::optional<std::string> p50 = live_.diagnostic(key + " p50 [ms]");
+  const std::optional<std::string> p99 = live_.diagnostic(key + " p99 [ms]");
+  if (p50 && p99) {
+    out << std::left << std::setw(kNameWidth) << name << "median " << *p50 << " ms, 99 % within "
+        << *p99 << " ms" << remark << "\n";
+  }
+}
+
 void Report::print(std::ostream& out) const {
   const DeblurCounters& counters = pipeline_.counters();
   out << "frames in                   " << counters.frames_in << "\n"
-      << "frames out                  " << frames_out_ << " (" << frames_lost_ << " lost)\n"
+      << "frames out                  " << live_.imageCount() << " (" << frames_lost_ << " lost)\n"
       << "deblurred                   " << counters.frames_deblurred << "\n"
       << "passed through unchanged    " << counters.framesPassed() << "\n";
   for (std::size_t i = 0; i < kPassReasonCount; ++i) {
@@ -381,7 +433,8 @@ void Report::print(std::ostream& out) const {
           << "\n";
     }
   }
-  out << "same bits as deblur_bag     " << frames_as_offline_ << " of " << frames_out_ << "\n";
+  out << "same bits as deblur_bag     " << frames_as_offline_ << " of " << live_.imageCount()
+      << "\n";
   const double span_s =
       first_event_ns_ ? static_cast<double>(last_event_ns_ - *first_event_ns_) / 1e9 : 0.0;
   out << "events                      " << counters.events_in;
@@ -389,19 +442,9 @@ void Report::print(std::ostream& out) const {
     out << ", " << text(static_cast<double>(counters.events_in) / span_s / 1e6, 3) << " Mev/s";
   }
   out << "\n";
-  if (!latencies_ms_.empty()) {
-    std::vector<double> sorted = latencies_ms_;
-    std::sort(sorted.begin(), sorted.end());
-    out << "image arrival to output     median " << text(sorted[sorted.size() / 2], 1)
-        << " ms, longest " << text(sorted.back(), 1)
-        << " ms (most of it waiting for the events of the exposure)\n";
-  }
-  const auto p50 = diagnostics_.find("Close latency p50 [ms]");
-  const auto p99 = diagnostics_.find("Close latency p99 [ms]");
-  if (p50 != diagnostics_.end() && p99 != diagnostics_.end()) {
-    out << "last message to output      median " << p50->second << " ms, 99 % within "
-        << p99->second << " ms\n";
-  }
+  printLatency(out, "image arrival to output", "Image to output",
+               " (most of it waiting for the exposure's last events)");
+  printLatency(out, "last message to output", "Close latency", "");
   out << "\n";
   printLine(out, "", "blurry", "deblurred", true_.frames > 0 ? "truth" : "");
   const bool truth = true_.frames > 0;
@@ -421,7 +464,8 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   TopicNames& topics = arguments.topics;
   po::options_description visible("Options");
   visible.add_options()("help,h", "print this")("in", po::value(&arguments.bag)->required(),
-                                                "recording with deblurred frames")(
+                                                "recording")(
+      "live", po::value(&arguments.live)->required(), "what was recorded of the nodelet")(
       "config", po::value(&arguments.config)->required(), "YAML file with the parameters")(
       "picture", po::value(&arguments.picture)->required(), "picture to write, e.g. out.png")(
       "name", po::value(&arguments.name), "heading of the picture")(
@@ -437,10 +481,10 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   po::variables_map values;
   po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
   if (values.count("help") > 0) {
-    std::cout << "Usage: demo_report --in BAG --config YAML --picture PNG [options] "
+    std::cout << "Usage: demo_report --in BAG --live BAG --config YAML --picture PNG [options] "
                  "[parameter:=value ...]\n\n"
-                 "Compares the frames of a recording with the deblurred ones that were recorded "
-                 "beside them.\n\n"
+                 "Compares the frames of a recording with the deblurred ones that the nodelet "
+                 "published while it was played.\n\n"
               << visible;
     return false;
   }

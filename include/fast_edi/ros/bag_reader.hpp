@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include <ros/duration.h>
 #include <ros/time.h>
 
 #include "fast_edi/ros/bag_chunk.hpp"
@@ -50,6 +51,8 @@ class BagReader {
   std::uint64_t messageCount() const { return index_.entries.size(); }
   /// Messages that next() has come by, readable or not.
   std::uint64_t position() const { return position_; }
+  /// From the first record time to the last.
+  ros::Duration duration() const;
   /// Of the first chunk: "none", "bz2" or "lz4".
   std::string compression() const;
   std::uint64_t fileSize() const { return file_.size(); }
