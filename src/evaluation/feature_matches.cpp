@@ -13,7 +13,9 @@ constexpr float kRatio = 0.8F;
 constexpr double kInlierDistancePx = 1.0;
 constexpr double kConfidence = 0.99;
 constexpr int kOrbFeatures = 2000;
-constexpr double kMserSupport = 2.5;  // side of the described square in region diameters
+// OpenCV's defaults (5 DN, 60 px) leave 16 regions in a dim frame of 346x260.
+constexpr int kMserDeltaDn = 2;
+constexpr int kMserMinAreaPx = 30;
 
 ImageFeatures describe(const cv::Mat& image, std::vector<cv::KeyPoint> points,
                        cv::Feature2D& descriptor) {
@@ -37,10 +39,14 @@ std::vector<cv::KeyPoint> detect(const cv::Mat& image, cv::Feature2D& detector) 
   return points;
 }
 
+std::vector<cv::KeyPoint> mserRegions(const cv::Mat& image) {
+  return detect(image, *cv::MSER::create(kMserDeltaDn, kMserMinAreaPx));
+}
+
 std::vector<SurfPlace> mserPlaces(const cv::Mat& image) {
   std::vector<SurfPlace> places;
-  for (const cv::KeyPoint& region : detect(image, *cv::MSER::create())) {
-    places.push_back({region.pt, kMserSupport * region.size});
+  for (const cv::KeyPoint& region : mserRegions(image)) {
+    places.push_back({region.pt, region.size});
   }
   return places;
 }
@@ -80,7 +86,7 @@ ImageFeatures findFeatures(const cv::Mat& image, FeatureMethod method) {
     case FeatureMethod::kMserSurf:
       return describeSurf(image, mserPlaces(image));
     case FeatureMethod::kMserOrb:
-      return describe(image, detect(image, *cv::MSER::create()), *cv::ORB::create());
+      return describe(image, mserRegions(image), *cv::ORB::create());
     case FeatureMethod::kBrisk:
       return detectAndDescribe(image, *cv::BRISK::create());
     case FeatureMethod::kOrb:

@@ -58,6 +58,12 @@ struct Arguments {
   double threshold_factor = 1.0;
 };
 
+std::string decimal(double value) {
+  std::ostringstream text;
+  text << std::setprecision(4) << value;
+  return text.str();
+}
+
 po::options_description describeOptions(Arguments& arguments) {
   fast_edi::TopicNames& topics = arguments.topics;
   fast_edi::ScorerOptions& scorer = arguments.scorer;
@@ -77,9 +83,12 @@ po::options_description describeOptions(Arguments& arguments) {
   add("brisque-range", text(scorer.brisque_range_file, "FILE"), "BRISQUE feature ranges");
   add("full-reference-only", po::bool_switch(&scorer.full_reference_only),
       "PSNR and SSIM alone: fast");
-  add("search-low", po::value(&arguments.search.low)->default_value(arguments.search.low),
+  const auto threshold = [](double& target) {
+    return po::value(&target)->default_value(target, decimal(target))->value_name("C");
+  };
+  add("search-low", threshold(arguments.search.low),
       "searched contrast: smallest threshold [natural log]");
-  add("search-high", po::value(&arguments.search.high)->default_value(arguments.search.high),
+  add("search-high", threshold(arguments.search.high),
       "searched contrast: largest threshold [natural log]");
 
   po::options_description recording("Recordings");
@@ -95,12 +104,16 @@ po::options_description describeOptions(Arguments& arguments) {
   auto add_simulated = simulated.add_options();
   add_simulated("sequences", po::bool_switch(&arguments.sequences),
                 "evaluate the fixed set of simulated sequences instead of a recording");
-  add_simulated("frames", po::value(&arguments.frames)->default_value(arguments.frames),
+  add_simulated("frames",
+                po::value(&arguments.frames)->default_value(arguments.frames)->value_name("N"),
                 "frames of each sequence");
-  add_simulated("seeds", po::value(&arguments.seeds)->default_value(arguments.seeds),
+  add_simulated("seeds",
+                po::value(&arguments.seeds)->default_value(arguments.seeds)->value_name("N"),
                 "seeds of each scene, from 1");
   add_simulated("threshold-factor",
-                po::value(&arguments.threshold_factor)->default_value(arguments.threshold_factor),
+                po::value(&arguments.threshold_factor)
+                    ->default_value(arguments.threshold_factor)
+                    ->value_name("F"),
                 "all methods get the true mean thresholds times this");
   options.add(recording).add(simulated);
   return options;
@@ -220,6 +233,7 @@ cv::Mat toMono8(const sensor_msgs::Image& message) {
   const cv_bridge::CvImagePtr raw = cv_bridge::toCvCopy(message);
   switch (reading.view.format) {
     case fast_edi::PixelFormat::kMono8:
+    case fast_edi::PixelFormat::kBayer8:
       return raw->image;
     case fast_edi::PixelFormat::kMono16: {
       constexpr double kTo8Bits = 1.0 / 257.0;
@@ -327,12 +341,6 @@ void printGroups(const std::vector<fast_edi::EvaluationGroup>& groups,
   for (const std::string& note : notes) {
     std::cout << note << "\n";
   }
-}
-
-std::string decimal(double value) {
-  std::ostringstream text;
-  text << std::setprecision(4) << value;
-  return text.str();
 }
 
 int evaluateBag(const Arguments& arguments, const fast_edi::DeblurParameters& parameters) {
