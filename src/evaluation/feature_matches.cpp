@@ -1,5 +1,7 @@
 #include "fast_edi/evaluation/feature_matches.hpp"
 
+#include <algorithm>
+
 #include <opencv2/calib3d.hpp>
 #include <opencv2/features2d.hpp>
 
@@ -13,9 +15,7 @@ constexpr float kRatio = 0.8F;
 constexpr double kInlierDistancePx = 1.0;
 constexpr double kConfidence = 0.99;
 constexpr int kOrbFeatures = 2000;
-// OpenCV's defaults (5 DN, 60 px) leave 16 regions in a dim frame of 346x260.
-constexpr int kMserDeltaDn = 2;
-constexpr int kMserMinAreaPx = 30;
+constexpr float kSamePlacePx = 2.0F;
 
 ImageFeatures describe(const cv::Mat& image, std::vector<cv::KeyPoint> points,
                        cv::Feature2D& descriptor) {
@@ -40,7 +40,22 @@ std::vector<cv::KeyPoint> detect(const cv::Mat& image, cv::Feature2D& detector) 
 }
 
 std::vector<cv::KeyPoint> mserRegions(const cv::Mat& image) {
-  return detect(image, *cv::MSER::create(kMserDeltaDn, kMserMinAreaPx));
+  return detect(image, *cv::MSER::create());
+}
+
+/// Regions lie within each other. Under a descriptor of fixed size those of one centre are the same
+/// feature, and the ratio test would throw all of them away.
+std::vector<cv::KeyPoint> withoutConcentric(const std::vector<cv::KeyPoint>& regions) {
+  std::vector<cv::KeyPoint> kept;
+  for (const cv::KeyPoint& region : regions) {
+    const bool seen = std::any_of(kept.begin(), kept.end(), [&](const cv::KeyPoint& other) {
+      return cv::norm(other.pt - region.pt) < kSamePlacePx;
+    });
+    if (!seen) {
+      kept.push_back(region);
+    }
+  }
+  return kept;
 }
 
 std::vector<SurfPlace> mserPlaces(const cv::Mat& image) {
@@ -86,7 +101,7 @@ ImageFeatures findFeatures(const cv::Mat& image, FeatureMethod method) {
     case FeatureMethod::kMserSurf:
       return describeSurf(image, mserPlaces(image));
     case FeatureMethod::kMserOrb:
-      return describe(image, mserRegions(image), *cv::ORB::create());
+      return describe(image, withoutConcentric(mserRegions(image)), *cv::ORB::create());
     case FeatureMethod::kBrisk:
       return detectAndDescribe(image, *cv::BRISK::create());
     case FeatureMethod::kOrb:

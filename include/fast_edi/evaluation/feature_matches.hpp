@@ -19,8 +19,8 @@ namespace fast_edi {
 enum class FeatureMethod {
   kSurf,       ///< SURF, by dlib, sampled at each pixel, response of 5 at least
   kFastBrisk,  ///< FAST corners, BRISK descriptors (upright)
-  kMserSurf,   ///< MSER regions (2 DN, 30 px at least), SURF descriptors over each region's extent
-  kMserOrb,    ///< the same regions, ORB descriptors (upright, 31 px)
+  kMserSurf,   ///< MSER regions, SURF descriptors over each region's extent
+  kMserOrb,    ///< MSER regions, concentric ones taken once, ORB descriptors (upright, 31 px)
   kBrisk,      ///< BRISK
   kOrb,        ///< ORB, 2000 features at most instead of 500, which would hide gains
 };
