@@ -1,6 +1,7 @@
 #include "parameter_keys.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace fast_edi {
 namespace {
@@ -13,6 +14,9 @@ constexpr NumberRange kTimeoutMs{0.0, 60e3, true};
 constexpr NumberRange kJumpMs{0.0, 3600e3, true};
 constexpr NumberRange kBufferedEvents{1.0, 4e9};
 constexpr NumberRange kOffsetDn{0.0, 255.0};
+constexpr NumberRange kFilterRange{0.0, 10.0, true};
+constexpr NumberRange kFilterSigmaPx{0.0, 10.0, true};
+constexpr NumberRange kFrameNoiseDn{0.0, 50.0, true};
 
 using TimeMember = std::int64_t DeblurParameters::*;
 using InstantMember = ExposureInstant DeblurParameters::*;
@@ -107,8 +111,55 @@ ConfigKey maxBufferedEventsKey() {
       });
 }
 
-std::vector<ConfigKey> buildTopLevelKeys() {
+/// What goes beyond plain EDI: one switch for all of it, then piece by piece.
+std::vector<ConfigKey> filterKeys() {
+  const FilterParameters defaults;
   return {
+      boolKey(
+          {"filter", "", boolText(defaults.enabled),
+           "everything beyond plain EDI: the filters below"},
+          [](bool value, ParameterDraft& draft) { draft.loaded.deblur.filter.enabled = value; }),
+      boolKey({"filter_despeckle", "", boolText(defaults.gain.despeckle),
+               "limit each pixel's log gain to the range of its neighbours': hot pixels, lone "
+               "noise events"},
+              [](bool value, ParameterDraft& draft) {
+                draft.loaded.deblur.filter.gain.despeckle = value;
+              }),
+      boolKey({"filter_gain", "", boolText(defaults.gain.smooth),
+               "smooth the map of log gains, keeping its edges: noise of events"},
+              [](bool value, ParameterDraft& draft) {
+                draft.loaded.deblur.filter.gain.smooth = value;
+              }),
+      numberKey({"filter_gain_range", "natural log",
+                 numberText(static_cast<double>(defaults.gain.range_log)),
+                 "differences of log gain well above this are edges"},
+                kFilterRange,
+                [](double value, ParameterDraft& draft) {
+                  draft.loaded.deblur.filter.gain.range_log = static_cast<float>(value);
+                }),
+      numberKey({"filter_gain_sigma_px", "px",
+                 numberText(static_cast<double>(defaults.gain.spatial_sigma_px)),
+                 "width of that smoothing"},
+                kFilterSigmaPx,
+                [](double value, ParameterDraft& draft) {
+                  draft.loaded.deblur.filter.gain.spatial_sigma_px = static_cast<float>(value);
+                }),
+      boolKey({"filter_frame_noise", "", boolText(defaults.frame_noise),
+               "take read and shot noise out of the latent image"},
+              [](bool value, ParameterDraft& draft) {
+                draft.loaded.deblur.filter.frame_noise = value;
+              }),
+      numberKey({"frame_noise_dn", "8-bit DN", numberText(defaults.frame_noise_dn),
+                 "standard deviation of a frame's noise"},
+                kFrameNoiseDn,
+                [](double value, ParameterDraft& draft) {
+                  draft.loaded.deblur.filter.frame_noise_dn = value;
+                }),
+  };
+}
+
+std::vector<ConfigKey> buildTopLevelKeys() {
+  std::vector<ConfigKey> keys = {
       thresholdKey("contrast_threshold_on", &ContrastThresholds::on, "ON"),
       thresholdKey("contrast_threshold_off", &ContrastThresholds::off, "OFF"),
       mapKey({"biases", "", "none", "bias settings that the thresholds are computed from"},
@@ -153,6 +204,10 @@ std::vector<ConfigKey> buildTopLevelKeys() {
                "subscribe to the inputs only while somebody subscribes to an output image"},
               [](bool value, ParameterDraft& draft) { draft.loaded.ros.lazy = value; }),
   };
+  for (ConfigKey& key : filterKeys()) {
+    keys.push_back(std::move(key));
+  }
+  return keys;
 }
 
 std::vector<ParameterDescription> descriptionsOf(const std::vector<ConfigKey>& keys) {

@@ -31,8 +31,8 @@ constexpr float kHalf = 0.5F;
 inline float clampLevel(float level, float max) {
   static_assert(std::numeric_limits<float>::is_iec559, "relies on the layout of IEEE 754");
   constexpr int kSignShift = 31;
-  std::int32_t bits;
-  std::int32_t max_bits;
+  std::int32_t bits = 0;
+  std::int32_t max_bits = 0;
   std::memcpy(&bits, &level, sizeof(bits));
   std::memcpy(&max_bits, &max, sizeof(max_bits));
   bits &= ~(bits >> kSignShift);
@@ -44,7 +44,7 @@ inline float clampLevel(float level, float max) {
 
 template <typename Level>
 Level loadLevel(const std::uint8_t* bytes) {
-  Level level;
+  Level level = 0;
   std::memcpy(&level, bytes, sizeof(level));
   return level;
 }
@@ -129,7 +129,7 @@ class LevelTable {
 
   std::uint32_t bucket(float exposure) const {
     static_assert(std::numeric_limits<float>::is_iec559, "relies on the layout of IEEE 754");
-    std::uint32_t bits;
+    std::uint32_t bits = 0;
     std::memcpy(&bits, &exposure, sizeof(bits));
     return bits >> shift_;
   }
@@ -313,6 +313,7 @@ void CameraResponse::applyGain(const ImageView& in, const float* gain,
     const float* row_gain = gain + static_cast<std::size_t>(y) * width;
     switch (in.format) {
       case PixelFormat::kMono8:
+      case PixelFormat::kBayer8:
         apply8(from, row_gain, width, to);
         break;
       case PixelFormat::kMono16:
@@ -349,7 +350,7 @@ void CameraResponse::applyColor8(const std::uint8_t* in, const float* gain, std:
   // Three samples per gain do not vectorise; one gain for each sample does.
   constexpr std::size_t kColors = 3;
   constexpr std::size_t kBlockPixels = 128;
-  std::array<float, kBlockPixels * kColors> sample_gain;
+  std::array<float, kBlockPixels * kColors> sample_gain{};
   for (std::size_t begin = 0; begin < width; begin += kBlockPixels) {
     const std::size_t count = std::min(kBlockPixels, width - begin);
     for (std::size_t i = 0; i < count; ++i) {

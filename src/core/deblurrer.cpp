@@ -12,6 +12,7 @@
 #include "fast_edi/core/event_stream.hpp"
 #include "fast_edi/core/exposure_pairing.hpp"
 #include "fast_edi/core/exposure_window.hpp"
+#include "fast_edi/core/latent_image.hpp"
 #include "fast_edi/core/window_predictor.hpp"
 
 namespace fast_edi {
@@ -72,7 +73,8 @@ class Deblurrer::Impl {
         sink_(sink),
         pairing_(parameters.close_timeout_ns, counters_),
         events_(limitsOf(parameters), counters_,
-                [this](StreamBreak kind, std::int64_t next_ns) { beforeBreak(kind, next_ns); }) {}
+                [this](StreamBreak kind, std::int64_t next_ns) { beforeBreak(kind, next_ns); }),
+        latent_image_(parameters.filter) {}
 
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                  std::int64_t now_ns);
@@ -132,6 +134,7 @@ class Deblurrer::Impl {
   SensorSize integral_size_;
   std::uint64_t integral_generation_ = 0;
   std::vector<float> gain_;
+  LatentImage latent_image_;
   std::optional<Expectation> expectation_;
 };
 
@@ -229,7 +232,9 @@ void Deblurrer::Impl::setParameters(const DeblurParameters& parameters) {
   }
   if (integral_ && integral_->thresholds() != parameters_.thresholds) {
     integral_->setThresholds(parameters_.thresholds);
+    expectation_.reset();
   }
+  latent_image_.setParameters(parameters_.filter);
   expectNext();
 }
 
@@ -390,7 +395,7 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
   const CloseReport report = integral_->close(*events_.lists(), window, reference_ns, gain_.data());
   expectation_.reset();
   const MutableImageView out = sink_.begin(output.input);
-  parameters_.response.applyGain(output.input.image, gain_.data(), out);
+  latent_image_.write(output.input.image, gain_.data(), parameters_.response, out);
 
   ++counters_.frames_deblurred;
   counters_.frames_still += report.events == 0 ? 1 : 0;

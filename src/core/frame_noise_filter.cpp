@@ -35,7 +35,7 @@ EdgePreservingFilter::Settings filterSettings(PixelFormat format,
                                               const FrameNoiseFilter::Settings& settings) {
   const float dn = format == PixelFormat::kMono16 ? kDn16PerDn8 : 1.0F;
   return {kRangeInNoise * settings.noise_dn * dn, settings.spatial_sigma_px,
-          settings.bayer ? 2 : 1};
+          format == PixelFormat::kBayer8 ? 2 : 1};
 }
 
 }  // namespace

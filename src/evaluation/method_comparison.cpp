@@ -180,10 +180,10 @@ const char* toString(Method method) {
 DeblurParameters parametersOf(Method method, const DeblurParameters& ours) {
   DeblurParameters parameters = ours;
   parameters.reference = ExposureInstant::kMid;
-  if (method == Method::kPlain) {
-    parameters.weighting = Weighting::kTime;
-  } else if (method == Method::kCounter) {
-    parameters.weighting = Weighting::kCounter;
+  parameters.filter.enabled = parameters.filter.enabled && method == Method::kOurs;
+  if (method != Method::kOurs) {
+    parameters.filter.enabled = false;
+    parameters.weighting = method == Method::kCounter ? Weighting::kCounter : Weighting::kTime;
   }
   return parameters;
 }

@@ -15,10 +15,12 @@ namespace encodings = sensor_msgs::image_encodings;
 constexpr std::uint32_t kMaxSide = std::numeric_limits<std::int16_t>::max();
 
 std::optional<PixelFormat> formatOf(const std::string& encoding) {
-  if (encoding == encodings::MONO8 || encoding == encodings::TYPE_8UC1 ||
-      encoding == encodings::BAYER_RGGB8 || encoding == encodings::BAYER_BGGR8 ||
-      encoding == encodings::BAYER_GBRG8 || encoding == encodings::BAYER_GRBG8) {
+  if (encoding == encodings::MONO8 || encoding == encodings::TYPE_8UC1) {
     return PixelFormat::kMono8;
+  }
+  if (encoding == encodings::BAYER_RGGB8 || encoding == encodings::BAYER_BGGR8 ||
+      encoding == encodings::BAYER_GBRG8 || encoding == encodings::BAYER_GRBG8) {
+    return PixelFormat::kBayer8;
   }
   if (encoding == encodings::MONO16) {
     return PixelFormat::kMono16;
@@ -56,10 +58,6 @@ ImageReading readImage(const sensor_msgs::Image& message) {
   if (*format == PixelFormat::kMono16 && message.is_bigendian != 0) {
     return refuse(ImageVerdict::kUnsupported, "mono16 in big-endian order, expected little-endian");
   }
-  if (message.width > kMaxSide || message.height > kMaxSide) {
-    return refuse(ImageVerdict::kUnsupported, "size " + sizeText(message) + ", expected at most " +
-                                                  std::to_string(kMaxSide) + " pixels a side");
-  }
   // In 64 bits, where no product of the message's 32-bit fields overflows. The last row may lack
   // its padding.
   const std::uint64_t row_bytes =
@@ -74,6 +72,10 @@ ImageReading readImage(const sensor_msgs::Image& message) {
     return refuse(ImageVerdict::kMalformed, std::to_string(message.data.size()) +
                                                 " bytes of data, expected at least " +
                                                 std::to_string(needed));
+  }
+  if (message.width > kMaxSide || message.height > kMaxSide) {
+    return refuse(ImageVerdict::kUnsupported, "size " + sizeText(message) + ", expected at most " +
+                                                  std::to_string(kMaxSide) + " pixels a side");
   }
   ImageReading reading;
   reading.verdict = ImageVerdict::kSupported;

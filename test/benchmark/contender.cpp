@@ -46,6 +46,10 @@ class Ours : public Contender {
         static_cast<std::int32_t>(exposure.length() / kNanosecondsPerMicrosecond), ++clock_ns_);
     if (sink_.finished != frames_) throw std::logic_error("the frame was not closed at once");
   }
+  Memory memory() const override {
+    const DeblurStatus status = deblurrer_.status();
+    return {status.buffer_bytes, status.buffered_events};
+  }
   std::string fault(Exposures exposures) const override {
     const DeblurCounters& counters = deblurrer_.counters();
     if (counters.frames_deblurred != frames_) return "a frame was passed through";
@@ -66,6 +70,7 @@ class Ours : public Contender {
     DeblurParameters parameters;
     parameters.thresholds = kThresholds;
     parameters.max_buffered_events = kMaxBufferedEvents;
+    parameters.filter.enabled = false;
     return parameters;
   }
 
@@ -87,6 +92,7 @@ class Paper : public Contender {
              std::uint8_t* latent) override {
     lists_.close(exposure, exposure.at(ExposureInstant::kMid), blurry, latent);
   }
+  Memory memory() const override { return {lists_.memoryBytes(), 0}; }
   std::string fault(Exposures) const override { return {}; }
 
  private:
@@ -104,6 +110,7 @@ class Vanilla : public Contender {
   void close(const ExposureInterval&, const std::uint8_t* blurry, std::uint8_t* latent) override {
     edi_.writeImage(blurry, latent);
   }
+  Memory memory() const override { return {edi_.memoryBytes(), 0}; }
   std::string fault(Exposures) const override { return {}; }
 
  private:

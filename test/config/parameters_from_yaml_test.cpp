@@ -187,7 +187,7 @@ TEST(ParametersFromYaml, UnknownKeysNameTheNearestKnownOne) {
 }
 
 TEST(ParametersFromYaml, KeysOfStepsThatDoNotExistAreUnknown) {
-  for (const char* key : {"filter", "refine_contrast", "latent_images"}) {
+  for (const char* key : {"refine_contrast", "latent_images"}) {
     EXPECT_THAT(messageFor(kThresholds + key + ": 1"), HasSubstr(std::string(key) + ": unknown"));
   }
 }

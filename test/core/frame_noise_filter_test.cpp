@@ -81,17 +81,15 @@ TEST(FrameNoiseFilter, ColoursDoNotMix) {
 }
 
 TEST(FrameNoiseFilter, TheMosaicOfABayerFrameStays) {
-  Image image(PixelFormat::kMono8);
+  Image image(PixelFormat::kBayer8);
   for (int y = 0; y < kSize.height; ++y) {
     for (int x = 0; x < kSize.width; ++x) {
       image.bytes[static_cast<std::size_t>(y) * image.step + static_cast<std::size_t>(x)] =
           static_cast<std::uint8_t>(100 + 2 * (y % 2) + x % 2);
     }
   }
-  FrameNoiseFilter::Settings settings;
-  settings.bayer = true;
-  Image out(PixelFormat::kMono8);
-  FrameNoiseFilter filter(kSize, PixelFormat::kMono8, settings);
+  Image out(PixelFormat::kBayer8);
+  FrameNoiseFilter filter(kSize, PixelFormat::kBayer8, {});
   filter.apply(image.view(), out.mutableView());
   EXPECT_EQ(out.bytes, image.bytes);
 }

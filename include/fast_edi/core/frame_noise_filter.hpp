@@ -18,7 +18,6 @@ class FrameNoiseFilter {
   struct Settings {
     float noise_dn = 1.5F;          ///< standard deviation of a frame's noise [8-bit DN], > 0
     float spatial_sigma_px = 1.5F;  ///< [neighbour distances], > 0
-    bool bayer = false;             ///< the pixels form a Bayer mosaic
   };
 
   /// \throws std::invalid_argument when a setting is out of range

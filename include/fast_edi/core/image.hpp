@@ -9,10 +9,10 @@
 
 namespace fast_edi {
 
-/// What one pixel looks like in memory. Raw Bayer frames are kMono8 here: an event belongs to one
-/// photosite, so each photosite is deblurred by its own list.
+/// What one pixel looks like in memory.
 enum class PixelFormat {
   kMono8,   ///< one byte
+  kBayer8,  ///< one byte, a photosite of a 2 x 2 colour mosaic; its events are its own, too
   kMono16,  ///< two bytes, little endian
   kColor8,  ///< three interleaved bytes (rgb8 or bgr8); all three share the pixel's list
 };
@@ -21,7 +21,7 @@ inline int channels(PixelFormat format) {
   return format == PixelFormat::kColor8 ? 3 : 1;
 }
 inline int bytesPerPixel(PixelFormat format) {
-  return format == PixelFormat::kMono8 ? 1 : format == PixelFormat::kMono16 ? 2 : 3;
+  return format == PixelFormat::kMono16 ? 2 : channels(format);
 }
 
 /// Read-only image memory; rows are \p step bytes apart.

@@ -9,6 +9,7 @@
 
 #include "fast_edi/core/camera_response.hpp"
 #include "fast_edi/core/contrast_threshold.hpp"
+#include "fast_edi/core/latent_image.hpp"
 #include "fast_edi/core/types.hpp"
 
 namespace fast_edi {
@@ -29,6 +30,7 @@ struct DeblurParameters {
   std::int64_t max_backward_jump_ns = 500 * kNanosecondsPerMillisecond;
   std::int64_t max_forward_jump_ns = 10'000 * kNanosecondsPerMillisecond;
   CameraResponse response = CameraResponse::linear();
+  FilterParameters filter;
   bool passthrough = false;  ///< publish every frame unchanged
 };
 

@@ -1,0 +1,52 @@
+/// \file
+/// The last stage: from a blurry frame and the gains of its pixels to the latent image.
+///
+///     gains -> GainFilter -> CameraResponse::applyGain -> FrameNoiseFilter -> outgoing image
+///
+/// The filters are what goes beyond plain EDI; each can be switched off, all with
+/// FilterParameters::enabled.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "fast_edi/core/camera_response.hpp"
+#include "fast_edi/core/frame_noise_filter.hpp"
+#include "fast_edi/core/gain_filter.hpp"
+#include "fast_edi/core/image.hpp"
+
+namespace fast_edi {
+
+struct FilterParameters {
+  bool enabled = true;  ///< false: plain EDI
+  GainFilter::Settings gain;
+  bool frame_noise = true;      ///< take out the frame's own noise, too
+  double frame_noise_dn = 1.5;  ///< its standard deviation [8-bit DN], > 0
+};
+
+/// \throws std::invalid_argument naming the parameter, its value and what was expected
+void validate(const FilterParameters& parameters);
+
+class LatentImage {
+ public:
+  explicit LatentImage(const FilterParameters& parameters);
+
+  /// Takes over other parameters; the filters are rebuilt when next used.
+  void setParameters(const FilterParameters& parameters);
+
+  /// \param gain width x height gains of DoubleIntegral::close(); filtered in place
+  /// \pre blurry and out have the same size and format
+  void write(const ImageView& blurry, float* gain, const CameraResponse& response,
+             const MutableImageView& out);
+
+ private:
+  void fit(const ImageView& blurry);
+
+  FilterParameters parameters_;
+  SensorSize size_;
+  PixelFormat format_ = PixelFormat::kMono8;
+  std::unique_ptr<GainFilter> gain_filter_;
+  std::unique_ptr<FrameNoiseFilter> frame_noise_filter_;
+};
+
+}  // namespace fast_edi
