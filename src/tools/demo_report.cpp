@@ -164,7 +164,8 @@ class LiveRecording {
       images_[image->header.stamp] = image;
       ++image_count_;
     } else if (message.connection->topic == kDiagnosticsTopic) {
-      for (const auto& status : deserialise<diagnostic_msgs::DiagnosticArray>(message)->status) {
+      const auto array = deserialise<diagnostic_msgs::DiagnosticArray>(message);
+      for (const auto& status : array->status) {
         for (const auto& value : status.values) {
           diagnostics_[value.key] = value.value;
         }
