@@ -104,6 +104,10 @@ TEST(ReadImage, RefusesLengthsThatContradictEachOther) {
   image.height = 2;
   EXPECT_EQ(readImage(image).verdict, ImageVerdict::kMalformed);
 
+  image = makeImage("mono8", 4, 3, 4);
+  image.height = 1'000'000;
+  EXPECT_EQ(readImage(image).verdict, ImageVerdict::kMalformed);
+
   image = makeImage("rgb8", 4, 3, 12);
   image.step = 11;
   EXPECT_EQ(readImage(image).verdict, ImageVerdict::kMalformed);

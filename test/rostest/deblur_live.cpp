@@ -1,0 +1,409 @@
+// Node and nodelet as their users see them: the same tests for both, see deblur.test.
+//
+// These instances run in namespaces of their own:
+//   /patient   close_timeout_ms 20000: what is deblurred depends on no timing
+//   /quick     close_timeout_ms 100: what happens without events or exposures
+//   /fallback  as /quick, with exposure_time_us
+//   /unexposed as /quick
+//   /biased    thresholds from biases
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstdio>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <dynamic_reconfigure/Config.h>
+#include <gtest/gtest.h>
+#include <ros/init.h>
+#include <boost/make_shared.hpp>
+
+#include "rostest/child_process.hpp"
+#include "rostest/expectations.hpp"
+#include "rostest/node_client.hpp"
+#include "rostest/recording.hpp"
+
+namespace fast_edi {
+namespace test {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class Live : public ::testing::Test {
+ protected:
+  void connectTo(const std::string& ns) {
+    ns_ = ns;
+    client_ = std::make_unique<NodeClient>(ns, ns + "/deblur");
+    ASSERT_TRUE(client_->listen()) << ns << " did not subscribe to its inputs";
+  }
+
+  void TearDown() override {
+    if (client_) {
+      EXPECT_TRUE(client_->stopListening()) << ns_ << " did not unsubscribe from its inputs";
+    }
+  }
+
+  /// A recording whose times are later than those of all tests before, as those of a driver are.
+  static RecordingSettings laterSettings() {
+    RecordingSettings settings;
+    ++epoch_;
+    settings.start_ns += epoch_ * 100 * kNanosecondsPerSecond;
+    settings.seed = static_cast<std::uint32_t>(epoch_);
+    return settings;
+  }
+
+  /// Plays a recording into a node that is not in a hurry, and compares with the pipeline alone.
+  void expectDeblurred(const Recording& recording, const DeblurParameters& parameters) {
+    client_->play(recording);
+    const std::vector<Output> outputs = client_->waitForOutputs(imagesOf(recording).size());
+    expectOneOutputForEachFrame(recording, outputs);
+    expectSameImages(outputs, deblurWithoutRos(recording, parameters));
+    EXPECT_EQ(countChanged(recording, outputs), static_cast<int>(outputs.size()))
+        << "frames were passed through";
+  }
+
+  std::string ns_;
+  std::unique_ptr<NodeClient> client_;
+
+ private:
+  static int epoch_;
+};
+int Live::epoch_ = 0;
+
+TEST_F(Live, DeblursWhatAnotherProcessPublishes) {
+  connectTo("/patient");
+  RecordingSettings settings = laterSettings();
+  settings.size = {346, 260};
+  settings.frames = 20;
+  expectDeblurred(makeRecording(settings), testParameters());
+}
+
+TEST_F(Live, KeepsEveryEncoding) {
+  connectTo("/patient");
+  for (const char* encoding : {"8UC1", "mono16", "bayer_rggb8", "rgb8", "bgr8"}) {
+    ASSERT_TRUE(client_->stopListening());
+    ASSERT_TRUE(client_->listen());
+    RecordingSettings settings = laterSettings();
+    settings.encoding = encoding;
+    settings.frames = 3;
+    SCOPED_TRACE(encoding);
+    expectDeblurred(makeRecording(settings), testParameters());
+  }
+}
+
+TEST_F(Live, NamesTheFrameOfImagesThatHaveNone) {
+  connectTo("/patient");
+  RecordingSettings settings = laterSettings();
+  settings.frame_id = "";
+  settings.frames = 2;
+  expectDeblurred(makeRecording(settings), testParameters());
+}
+
+TEST_F(Live, DeblursABagPlayedAtRealSpeed) {
+  connectTo("/patient");
+  const Recording recording = makeRecording(laterSettings());
+  const std::string path = ::testing::TempDir() + "deblur_live.bag";
+  writeBag(recording, "/patient", path);
+  ChildProcess player({"rosbag", "play", "--quiet", "--wait-for-subscribers", path});
+  EXPECT_EQ(player.wait(), 0);
+  const std::vector<Output> outputs = client_->waitForOutputs(imagesOf(recording).size());
+  expectOneOutputForEachFrame(recording, outputs);
+  expectSameImages(outputs, deblurWithoutRos(recording, testParameters()));
+  std::remove(path.c_str());
+}
+
+TEST_F(Live, StartsAnewWhenABagIsPlayedInALoop) {
+  connectTo("/patient");
+  RecordingSettings settings = laterSettings();
+  settings.frames = 20;  // longer than max_backward_jump_ms
+  const Recording recording = makeRecording(settings);
+  const std::string path = ::testing::TempDir() + "deblur_live_loop.bag";
+  writeBag(recording, "/patient", path);
+  const std::size_t frames = imagesOf(recording).size();
+  std::vector<Output> outputs;
+  {
+    const ChildProcess player(
+        {"rosbag", "play", "--quiet", "--wait-for-subscribers", "--loop", path});
+    outputs = client_->waitForOutputs(2 * frames);
+  }
+  ASSERT_GE(outputs.size(), 2 * frames);
+  const auto second = outputs.begin() + static_cast<std::ptrdiff_t>(frames);
+  const std::vector<Output> expected = deblurWithoutRos(recording, testParameters());
+  expectSameImages({outputs.begin(), second}, expected);
+  expectSameImages({second, second + static_cast<std::ptrdiff_t>(frames)}, expected);
+  std::remove(path.c_str());
+}
+
+TEST_F(Live, WaitsForTheEventsOfAFrame) {
+  connectTo("/patient");
+  RecordingSettings settings = laterSettings();
+  settings.frames = 1;
+  const Recording recording = makeRecording(settings);
+  // Everything but events from the middle of the exposure on, which come last.
+  const std::int64_t hold_ns = settings.start_ns + settings.first_exposure_ns;
+  Recording late;
+  for (const Arrival& arrival : recording) {
+    if (arrival.events && arrival.time_ns > hold_ns) {
+      late.push_back(arrival);
+    } else {
+      client_->publish(arrival);
+    }
+  }
+  ASSERT_FALSE(late.empty());
+  ASSERT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
+    return valueOf(status, "Backlog: waiting frames") == "1" &&
+           valueOf(status, "Exposures in") != "0";
+  })) << client_->report().message;
+  EXPECT_EQ(client_->outputCount(), 0u) << "closed before its events came";
+  for (const Arrival& arrival : late) {
+    client_->publish(arrival);
+  }
+  const std::vector<Output> outputs = client_->waitForOutputs(1);
+  expectOneOutputForEachFrame(recording, outputs);
+  expectSameImages(outputs, deblurWithoutRos(recording, testParameters()));
+}
+
+TEST_F(Live, TakesAStillSceneForSharp) {
+  connectTo("/quick");
+  RecordingSettings settings = laterSettings();
+  settings.frames = 2;
+  settings.frame_period_ns = 400 * kNanosecondsPerMillisecond;
+  Recording recording = makeRecording(settings);
+  // The events end between the two exposures.
+  const std::int64_t still_ns = settings.start_ns + 200 * kNanosecondsPerMillisecond;
+  recording.erase(std::remove_if(recording.begin(), recording.end(),
+                                 [still_ns](const Arrival& arrival) {
+                                   return arrival.events && arrival.time_ns > still_ns;
+                                 }),
+                  recording.end());
+  client_->play(recording);
+  const std::vector<Output> outputs = client_->waitForOutputs(2);
+  expectOneOutputForEachFrame(recording, outputs);
+  expectSameImages(outputs, deblurWithoutRos(recording, testParameters()));
+  EXPECT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
+    return valueOf(status, "Frames without an event") != "0" &&
+           valueOf(status, "Frames closed by timeout") != "0";
+  })) << client_->report().message;
+}
+
+TEST_F(Live, PassesFramesThroughWithoutAnyEvents) {
+  connectTo("/quick");
+  Recording recording = makeRecording(laterSettings());
+  recording.erase(std::remove_if(recording.begin(), recording.end(),
+                                 [](const Arrival& arrival) { return arrival.events != nullptr; }),
+                  recording.end());
+  client_->play(recording);
+  const std::vector<Output> outputs = client_->waitForOutputs(imagesOf(recording).size());
+  expectOneOutputForEachFrame(recording, outputs);
+  EXPECT_EQ(countChanged(recording, outputs), 0);
+  EXPECT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
+    return status.level == DiagnosticStatus::ERROR &&
+           contains(status.message, "no event array on /quick/events");
+  })) << client_->report().message;
+}
+
+TEST_F(Live, PassesFramesThroughWithoutAnyExposure) {
+  connectTo("/unexposed");  // no other test sends exposures there: the last one would be taken
+  RecordingSettings settings = laterSettings();
+  settings.exposures = false;
+  settings.frames = 40;  // reports come once a second: one of them in the midst
+  const Recording recording = makeRecording(settings);
+  const std::future<void> playing =
+      std::async(std::launch::async, [this, &recording] { client_->play(recording); });
+  EXPECT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
+    return status.level == DiagnosticStatus::WARN &&
+           contains(status.message, "exposure unknown; expected messages on /unexposed/exposure") &&
+           contains(status.message, "exposure_time_us");
+  })) << client_->report().message;
+  playing.wait();
+  const std::vector<Output> outputs = client_->waitForOutputs(imagesOf(recording).size());
+  expectOneOutputForEachFrame(recording, outputs);
+  EXPECT_EQ(countChanged(recording, outputs), 0);
+}
+
+TEST_F(Live, FallsBackToTheExposureParameter) {
+  connectTo("/fallback");
+  RecordingSettings settings = laterSettings();
+  settings.exposures = false;
+  const Recording recording = makeRecording(settings);
+  DeblurParameters parameters = testParameters();
+  parameters.exposure_time_ns = settings.exposure_ns;
+  expectDeblurred(recording, parameters);
+}
+
+TEST_F(Live, PassesUnsupportedEncodingsThrough) {
+  connectTo("/quick");
+  auto image =
+      boost::make_shared<sensor_msgs::Image>(*imagesOf(makeRecording(laterSettings())).front());
+  image->encoding = "32FC1";
+  image->step = image->width * 4;
+  image->data.resize(std::size_t{image->step} * image->height, 7);
+  client_->publish(image);
+  const std::vector<Output> outputs = client_->waitForOutputs(1);
+  ASSERT_EQ(outputs.size(), 1u);
+  EXPECT_EQ(outputs[0].image->encoding, "32FC1");
+  EXPECT_EQ(outputs[0].image->data, image->data);
+  EXPECT_EQ(outputs[0].image->header.stamp, image->header.stamp);
+  EXPECT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
+    return contains(status.message, "encoding \"32FC1\", expected mono8");
+  })) << client_->report().message;
+}
+
+TEST_F(Live, RefusesMalformedImages) {
+  connectTo("/patient");
+  RecordingSettings settings = laterSettings();
+  settings.frames = 3;
+  const Recording recording = makeRecording(settings);
+  auto lying = boost::make_shared<sensor_msgs::Image>(*imagesOf(recording).front());
+  lying->height = 1'000'000;
+  client_->publish(lying);
+  EXPECT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
+    return contains(status.message, "/patient/image_raw refused") &&
+           contains(status.message, "bytes of data, expected at least");
+  })) << client_->report().message;
+  expectDeblurred(recording, testParameters());
+}
+
+TEST_F(Live, SurvivesAChangeOfSize) {
+  connectTo("/patient");
+  RecordingSettings settings = laterSettings();
+  settings.frames = 3;
+  const Recording small = makeRecording(settings);
+  settings.start_ns += 5 * kNanosecondsPerSecond;
+  settings.size = {64, 56};
+  const Recording large = makeRecording(settings);
+  client_->play(small);
+  client_->play(large);
+  Recording both = small;
+  both.insert(both.end(), large.begin(), large.end());
+  const std::vector<Output> outputs = client_->waitForOutputs(6);
+  expectOneOutputForEachFrame(both, outputs);
+  expectSameImages(outputs, deblurWithoutRos(both, testParameters()));
+}
+
+TEST_F(Live, PassesFramesOfAnotherSizeThanTheSensorsThrough) {
+  connectTo("/quick");
+  RecordingSettings settings = laterSettings();
+  settings.frames = 3;
+  Recording recording = makeRecording(settings);
+  settings.size = {64, 56};
+  const std::vector<sensor_msgs::ImageConstPtr> larger = imagesOf(makeRecording(settings));
+  std::size_t next = 0;
+  for (Arrival& arrival : recording) {
+    if (arrival.image) {
+      arrival.image = larger.at(next++);
+    } else if (arrival.info) {
+      auto changed = boost::make_shared<sensor_msgs::CameraInfo>(*arrival.info);
+      changed->height = 56;
+      arrival.info = changed;
+    }
+  }
+  client_->play(recording);
+  const std::vector<Output> outputs = client_->waitForOutputs(3);
+  expectOneOutputForEachFrame(recording, outputs);
+  EXPECT_EQ(countChanged(recording, outputs), 0);
+  EXPECT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
+    return valueOf(status, "Frames passed through: size differs from the event sensor") != "0";
+  })) << client_->report().message;
+}
+
+TEST_F(Live, SubscribesOnlyWhileSomebodyListens) {
+  connectTo("/quick");
+  ASSERT_TRUE(client_->stopListening());
+  EXPECT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
+    return status.level == DiagnosticStatus::OK && contains(status.message, "idle");
+  })) << client_->report().message;
+  EXPECT_FALSE(client_->anyInputConnected());
+  ASSERT_TRUE(client_->listen());
+}
+
+TEST_F(Live, ShowsSilence) {
+  connectTo("/quick");
+  EXPECT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
+    return status.level == DiagnosticStatus::ERROR &&
+           contains(status.message, "no frame on /quick/image_raw");
+  })) << client_->report().message;
+}
+
+TEST_F(Live, DrawsAComparisonForWhoeverSubscribes) {
+  connectTo("/patient");
+  std::mutex mutex;
+  std::condition_variable changed;
+  sensor_msgs::ImageConstPtr picture;
+  const ros::Subscriber subscriber = client_->nodeHandle().subscribe<sensor_msgs::Image>(
+      "comparison", 10, [&](const sensor_msgs::ImageConstPtr& image) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        picture = image;
+        changed.notify_all();
+      });
+  ASSERT_TRUE(waitUntil([] { return publisherSendsToUs("/patient/comparison"); }));
+  RecordingSettings settings = laterSettings();
+  settings.frames = 3;
+  client_->play(makeRecording(settings));
+  std::unique_lock<std::mutex> lock(mutex);
+  ASSERT_TRUE(changed.wait_for(lock, kDeadline, [&] { return picture != nullptr; }));
+  EXPECT_EQ(picture->encoding, "bgr8");
+  EXPECT_EQ(picture->width, 3u * 64u);
+  EXPECT_EQ(picture->height, 48u);
+}
+
+TEST_F(Live, SendsAZeroCalibrationWhenItHasNone) {
+  connectTo("/biased");  // no other test sends a camera_info there
+  RecordingSettings settings = laterSettings();
+  settings.camera_info = false;
+  settings.frames = 2;
+  const Recording recording = makeRecording(settings);
+  client_->play(recording);
+  const std::vector<Output> outputs = client_->waitForOutputs(2);
+  expectOneOutputForEachFrame(recording, outputs);
+  EXPECT_EQ(outputs.at(0).info->K[0], 0.0);
+}
+
+TEST_F(Live, FollowsTheDriversBiases) {
+  connectTo("/biased");
+  ros::Publisher updates =
+      client_->nodeHandle().advertise<dynamic_reconfigure::Config>("bias_updates", 1, true);
+  dynamic_reconfigure::Config update;
+  const auto set = [&update](const char* name, int value) {
+    dynamic_reconfigure::IntParameter parameter;
+    parameter.name = name;
+    parameter.value = value;
+    update.ints.push_back(parameter);
+  };
+  set("DiffBn_coarse", 4);
+  set("DiffBn_fine", 39);
+  set("ONBn_coarse", 6);
+  set("ONBn_fine", 200);
+  set("OFFBn_coarse", 4);
+  set("OFFBn_fine", 1);
+  updates.publish(update);
+  const auto follows = [](const DiagnosticStatus& status) {
+    return valueOf(status, "Contrast threshold ON").substr(0, 6) == "0.3819" &&
+           valueOf(status, "Contrast threshold OFF").substr(0, 6) == "0.2415";
+  };
+  EXPECT_TRUE(client_->waitForReport(follows))
+      << valueOf(client_->report(), "Contrast threshold ON");
+  update.ints.back().value = 0;  // as the stock driver has it
+  updates.publish(update);
+  EXPECT_TRUE(client_->waitForReport([&follows](const DiagnosticStatus& status) {
+    return contains(status.message, "/biased/bias_updates refused") && follows(status);
+  })) << client_->report().message;
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace fast_edi
+
+int main(int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "deblur_live");
+  const ros::NodeHandle keeps_ros_running;
+  return RUN_ALL_TESTS();
+}
