@@ -2,6 +2,7 @@
 /// What the benchmarks compare, behind one interface: wire events in, 8-bit images out.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -19,6 +20,11 @@ enum class Exposures {
 };
 const char* toString(Exposures exposures);
 
+struct Memory {
+  std::size_t bytes = 0;            ///< of events and per-pixel state
+  std::size_t buffered_events = 0;  ///< 0 where that is not counted
+};
+
 class Contender {
  public:
   virtual ~Contender() = default;
@@ -28,6 +34,7 @@ class Contender {
   /// Writes the latent image at mid-exposure.
   virtual void close(const ExposureInterval& exposure, const std::uint8_t* blurry,
                      std::uint8_t* latent) = 0;
+  virtual Memory memory() const = 0;
   /// Empty, or what went wrong: a measurement of something else than it says is worth nothing.
   virtual std::string fault(Exposures exposures) const = 0;
 };

@@ -55,6 +55,7 @@ FrameCost FrameRun::play() {
   contender_->begin(exposure);
   for (std::size_t i = 0; i < packets_before; ++i) contender_->add(stream_.packet(i));
   cost.take_in_s = before.seconds();
+  most_buffered_ = std::max(most_buffered_, contender_->memory().buffered_events);
 
   const Stopwatch closing;
   contender_->close(exposure, blurry_.data(), latent_.data());
@@ -104,6 +105,9 @@ void measureFrames(benchmark::State& state, Method method, Exposures exposures, 
   state.counters["take_in_ms"] = percentile(take_in, kMedian) * 1e3;
   state.counters["close_ms"] = percentile(close, kMedian) * 1e3;
   state.counters["close_ms_p90"] = percentile(close, kHigh) * 1e3;
+  state.counters["memory_bytes"] = static_cast<double>(run.memory().bytes);
+  state.counters["buffered_events"] = static_cast<double>(run.memory().buffered_events);
+  state.counters["pixels"] = static_cast<double>(settings.size.pixelCount());
 }
 
 std::int64_t frameCount(Method method, const StreamSettings& settings) {

@@ -33,6 +33,8 @@ class FrameRun {
   /// outside the exposure.
   std::size_t events() const;
   std::string fault() const { return contender_->fault(exposures_); }
+  /// Memory at the end, and the most events that were buffered when a frame was closed.
+  Memory memory() const { return {contender_->memory().bytes, most_buffered_}; }
 
  private:
   ExposureInterval nextExposure();
@@ -44,13 +46,15 @@ class FrameRun {
   std::vector<std::uint8_t> blurry_;
   std::vector<std::uint8_t> latent_;
   std::uint64_t frame_ = 0;
+  std::size_t most_buffered_ = 0;
 };
 
 /// Which part of a frame counts as the benchmark's time.
 enum class Part { kTakeIn, kClose, kAll };
 
 /// Body of a benchmark: plays frames and sets the counters that the scripts read:
-/// Mev_per_s and ns_per_event (of the part), take_in_ms and close_ms (medians), close_ms_p90.
+/// Mev_per_s and ns_per_event (of the part), take_in_ms and close_ms (medians), close_ms_p90,
+/// memory_bytes, buffered_events, pixels.
 void measureFrames(benchmark::State& state, Method method, Exposures exposures, Part part,
                    const StreamSettings& settings);
 

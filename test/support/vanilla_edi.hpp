@@ -9,6 +9,7 @@
 /// without events.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -32,6 +33,8 @@ class VanillaEdi {
   std::vector<double> doubleIntegral() const;
   /// Writes the latent image of a frame. Both images have pixelCount() bytes, row-major.
   void writeImage(const std::uint8_t* blurry, std::uint8_t* latent) const;
+  /// Bytes of the four images.
+  std::size_t memoryBytes() const { return 4 * latent_.size() * sizeof(double); }
 
  private:
   double valueAt(std::size_t pixel) const;
