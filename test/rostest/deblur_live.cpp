@@ -28,6 +28,55 @@
 
 namespace fast_edi {
 namespace test {
+
+/// An event array that claims 2^32 - 1 events and holds none.
+struct LyingArray {};
+
+}  // namespace test
+}  // namespace fast_edi
+
+namespace ros {
+namespace message_traits {
+
+template <>
+struct MD5Sum<fast_edi::test::LyingArray> {
+  static const char* value() { return MD5Sum<fast_edi::EventArray>::value(); }
+  static const char* value(const fast_edi::test::LyingArray&) { return value(); }
+};
+template <>
+struct DataType<fast_edi::test::LyingArray> {
+  static const char* value() { return DataType<fast_edi::EventArray>::value(); }
+  static const char* value(const fast_edi::test::LyingArray&) { return value(); }
+};
+template <>
+struct Definition<fast_edi::test::LyingArray> {
+  static const char* value() { return Definition<fast_edi::EventArray>::value(); }
+  static const char* value(const fast_edi::test::LyingArray&) { return value(); }
+};
+
+}  // namespace message_traits
+
+namespace serialization {
+
+template <>
+struct Serializer<fast_edi::test::LyingArray> {
+  template <typename Stream>
+  static void write(Stream& stream, const fast_edi::test::LyingArray&) {
+    stream.next(std_msgs::Header());
+    stream.next(std::uint32_t{48});
+    stream.next(std::uint32_t{64});
+    stream.next(std::uint32_t{0xffffffff});
+  }
+  static std::uint32_t serializedLength(const fast_edi::test::LyingArray&) {
+    return serializationLength(std_msgs::Header()) + 3 * sizeof(std::uint32_t);
+  }
+};
+
+}  // namespace serialization
+}  // namespace ros
+
+namespace fast_edi {
+namespace test {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
@@ -268,6 +317,19 @@ TEST_F(Live, RefusesMalformedImages) {
     return contains(status.message, "/patient/image_raw refused") &&
            contains(status.message, "bytes of data, expected at least");
   })) << client_->report().message;
+  expectDeblurred(recording, testParameters());
+}
+
+TEST_F(Live, SurvivesEventArraysThatLieAboutTheirLength) {
+  connectTo("/patient");
+  RecordingSettings settings = laterSettings();
+  settings.frames = 3;
+  const Recording recording = makeRecording(settings);
+  const ros::Publisher liar = client_->nodeHandle().advertise<LyingArray>("events", 10);
+  ASSERT_TRUE(waitUntil([&liar] { return liar.getNumSubscribers() > 0; }));
+  for (int i = 0; i < 10; ++i) {
+    liar.publish(LyingArray());
+  }
   expectDeblurred(recording, testParameters());
 }
 

@@ -1,0 +1,91 @@
+// The launch files that play a recording: no frame of it may be lost, neither the first nor the
+// last. Starts roslaunch itself, with a master of its own.
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include "rostest/child_process.hpp"
+#include "rostest/expectations.hpp"
+#include "rostest/recording.hpp"
+
+namespace fast_edi {
+namespace test {
+namespace {
+
+/// A port that nobody listens on.
+std::string freePort() {
+  const int listener = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  socklen_t size = sizeof(address);
+  auto* generic = reinterpret_cast<sockaddr*>(&address);
+  if (listener < 0 || bind(listener, generic, size) != 0 ||
+      getsockname(listener, generic, &size) != 0) {
+    throw std::runtime_error("no free port");
+  }
+  close(listener);
+  return std::to_string(ntohs(address.sin_port));
+}
+
+std::vector<Output> readOutputs(const std::string& path) {
+  std::vector<sensor_msgs::ImageConstPtr> images;
+  std::vector<sensor_msgs::CameraInfoConstPtr> infos;
+  rosbag::Bag bag(path);
+  for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
+    if (message.getTopic() == "/dvs/deblurred/image_raw") {
+      images.push_back(message.instantiate<sensor_msgs::Image>());
+    } else if (message.getTopic() == "/dvs/deblurred/camera_info") {
+      infos.push_back(message.instantiate<sensor_msgs::CameraInfo>());
+    }
+  }
+  EXPECT_EQ(images.size(), infos.size());
+  std::vector<Output> outputs;
+  for (std::size_t i = 0; i < images.size() && i < infos.size(); ++i) {
+    outputs.push_back({images[i], infos[i]});
+  }
+  return outputs;
+}
+
+struct LaunchCase {
+  const char* file;
+  const char* argument;
+};
+
+class ReplayLaunch : public ::testing::TestWithParam<LaunchCase> {};
+
+TEST_P(ReplayLaunch, RecordsOneOutputForEachFrame) {
+  const std::string in = ::testing::TempDir() + "replay_launch_in.bag";
+  const std::string out = ::testing::TempDir() + "replay_launch_out.bag";
+  const Recording recording = makeRecording({});
+  writeBag(recording, "/dvs", in);
+  ChildProcess launch(
+      {"roslaunch", "-p", freePort(), std::string(FAST_EDI_SOURCE_DIR "/launch/") + GetParam().file,
+       "bag:=" + in, "record:=" + out, "config:=" FAST_EDI_SOURCE_DIR "/test/rostest/patient.yaml",
+       GetParam().argument});
+  ASSERT_EQ(launch.wait(), 0);
+  const std::vector<Output> outputs = readOutputs(out);
+  expectOneOutputForEachFrame(recording, outputs);
+  expectSameImages(outputs, deblurWithoutRos(recording, testParameters()));
+  std::remove(in.c_str());
+  std::remove(out.c_str());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ReplayLaunch,
+                         ::testing::Values(LaunchCase{"replay.launch", "use_sim_time:=true"},
+                                           LaunchCase{"replay.launch", "use_sim_time:=false"},
+                                           LaunchCase{"demo.launch", "namespace:=dvs"}));
+
+}  // namespace
+}  // namespace test
+}  // namespace fast_edi
