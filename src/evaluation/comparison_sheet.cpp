@@ -15,7 +15,6 @@ constexpr int kTitleHeight = 48;
 constexpr int kHeadingHeight = 34;
 constexpr int kLabelHeight = 28;
 constexpr int kCaptionHeight = 24;
-constexpr int kCaptionIndent = 8;
 constexpr int kBaseline = 8;
 
 constexpr double kTitleScale = 0.85;
@@ -26,8 +25,6 @@ const cv::Scalar kPaper = cv::Scalar::all(250);
 const cv::Scalar kInk = cv::Scalar::all(30);
 const cv::Scalar kPaleInk = cv::Scalar::all(110);
 const cv::Scalar kNothing = cv::Scalar::all(225);
-const cv::Scalar kCaptionInk = cv::Scalar::all(255);
-constexpr double kCaptionShade = 0.45;  ///< brightness left under a caption
 
 void write(cv::Mat& picture, const std::string& text, int x, int y, double scale,
            const cv::Scalar& ink) {
@@ -64,15 +61,6 @@ cv::Mat prepared(const cv::Mat& panel, int magnification) {
   return larger;
 }
 
-void drawCaption(cv::Mat area, const std::string& caption) {
-  if (caption.empty()) {
-    return;
-  }
-  cv::Mat strip = area.rowRange(std::max(0, area.rows - kCaptionHeight), area.rows);
-  strip *= kCaptionShade;
-  write(area, caption, kCaptionIndent, area.rows - kBaseline, kSmallScale, kCaptionInk);
-}
-
 }  // namespace
 
 cv::Mat drawSheet(const Sheet& sheet) {
@@ -81,7 +69,7 @@ cv::Mat drawSheet(const Sheet& sheet) {
   const cv::Size panel_size = largest * magnification;
   const int columns = static_cast<int>(sheet.columns.size());
   const int rows = static_cast<int>(sheet.rows.size());
-  const int row_height = kLabelHeight + panel_size.height + kGap;
+  const int row_height = kLabelHeight + panel_size.height + kCaptionHeight + kGap;
   cv::Mat picture(kMargin + kTitleHeight + kHeadingHeight + rows * row_height + kMargin,
                   2 * kMargin + columns * panel_size.width + (columns - 1) * kGap, CV_8UC3, kPaper);
   write(picture, sheet.title, kMargin, kMargin + kTitleHeight - kBaseline - kGap, kTitleScale,
@@ -105,7 +93,10 @@ cv::Mat drawSheet(const Sheet& sheet) {
         const cv::Mat panel = prepared(row.panels[index], magnification);
         panel.copyTo(area(cv::Rect({0, 0}, panel.size())));
       }
-      drawCaption(area, index < row.captions.size() ? row.captions[index] : std::string());
+      if (index < row.captions.size()) {
+        write(picture, row.captions[index], left(column), place.br().y + kCaptionHeight - kBaseline,
+              kSmallScale, kInk);
+      }
     }
   }
   return picture;

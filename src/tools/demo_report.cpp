@@ -46,7 +46,7 @@ constexpr std::size_t kSheetRows = 4;
 constexpr std::size_t kSettleAfterFrames = 16;
 constexpr double kNanosecondsInMillisecond = 1e6;
 constexpr int kNameWidth = 28;
-constexpr double kNoticeableGain = 1.05;
+constexpr double kNoticeableGain = 1.25;
 constexpr char kDiagnosticsTopic[] = "/diagnostics";
 
 struct Arguments {
@@ -444,7 +444,7 @@ void Report::print(std::ostream& out) const {
   }
   out << "\n";
   printLatency(out, "image arrival to output", "Image to output",
-               " (most of it waiting for the exposure's last events)");
+               " (the wait for the exposure's last events included)");
   printLatency(out, "last message to output", "Close latency", "");
   out << "\n";
   printLine(out, "", "blurry", "deblurred", true_.frames > 0 ? "truth" : "");

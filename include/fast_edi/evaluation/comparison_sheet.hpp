@@ -12,7 +12,7 @@ namespace fast_edi {
 struct SheetRow {
   std::string label;                  ///< above the row's panels, in small letters
   std::vector<cv::Mat> panels;        ///< one for each column, CV_8UC1 or CV_8UC3; may be empty
-  std::vector<std::string> captions;  ///< in the panels' lower left corners; may be fewer
+  std::vector<std::string> captions;  ///< below the panels; may be fewer
 };
 
 struct Sheet {
