@@ -1,9 +1,11 @@
 #include "fast_edi/evaluation/brisque.hpp"
 
 #include <fstream>
+#include <stdexcept>
 
 #include <gmock/gmock.h>
 
+#include "evaluation/message_of.hpp"
 #include "evaluation/test_images.hpp"
 #include "fast_edi/evaluation/capability.hpp"
 
@@ -11,15 +13,15 @@ namespace fast_edi {
 namespace {
 
 using testing::HasSubstr;
-using testing::ThrowsMessage;
 
 TEST(BrisqueTest, NamesAMissingFile) {
   if (!isAvailable(OptionalLibrary::kOpencvQuality)) {
     EXPECT_THROW(Brisque("/nonexistent/model.yml", "/nonexistent/range.yml"), UnavailableError);
     return;
   }
-  EXPECT_THAT([] { Brisque("/nonexistent/model.yml", "/nonexistent/range.yml"); },
-              ThrowsMessage<std::runtime_error>(HasSubstr("/nonexistent/model.yml")));
+  EXPECT_THAT(messageOf<std::runtime_error>(
+                  [] { Brisque("/nonexistent/model.yml", "/nonexistent/range.yml"); }),
+              HasSubstr("/nonexistent/model.yml"));
 }
 
 TEST(BrisqueTest, BlurAndNoiseRaiseTheScore) {

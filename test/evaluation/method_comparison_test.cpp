@@ -21,6 +21,7 @@ DeblurParameters parameters() {
   result.thresholds = {0.3, 0.2};
   result.exposure_source = ExposureSource::kParameter;
   result.exposure_time_ns = kExposureNs;
+  result.filter.enabled = false;
   return result;
 }
 
@@ -121,11 +122,15 @@ TEST_F(MethodComparisonTest, ErrorsOfTheReceiverReachTheCaller) {
   EXPECT_THROW(failing.finish(), std::runtime_error);
 }
 
-TEST(ParametersOfTest, MethodsDifferInTheirWeightingAndShowMidExposure) {
+TEST(ParametersOfTest, OnlyOursIsFilteredAndAllShowMidExposure) {
   DeblurParameters ours = parameters();
+  ours.filter.enabled = true;
   ours.reference = ExposureInstant::kStart;
   EXPECT_EQ(parametersOf(Method::kCounter, ours).weighting, Weighting::kCounter);
   EXPECT_EQ(parametersOf(Method::kPlain, ours).weighting, Weighting::kTime);
+  EXPECT_FALSE(parametersOf(Method::kCounter, ours).filter.enabled);
+  EXPECT_FALSE(parametersOf(Method::kPlain, ours).filter.enabled);
+  EXPECT_TRUE(parametersOf(Method::kOurs, ours).filter.enabled);
   for (const Method method : {Method::kPlain, Method::kCounter, Method::kOurs}) {
     EXPECT_EQ(parametersOf(method, ours).reference, ExposureInstant::kMid);
     EXPECT_EQ(parametersOf(method, ours).thresholds, ours.thresholds);

@@ -1,16 +1,18 @@
 #include "fast_edi/evaluation/report.hpp"
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
 
+#include "evaluation/message_of.hpp"
 #include "evaluation/test_images.hpp"
 #include "fast_edi/evaluation/plot.hpp"
+#include "support/temporary_directory.hpp"
 
 namespace fast_edi {
 namespace {
@@ -37,15 +39,8 @@ Evaluation evaluationWith(const std::string& name, const std::vector<FrameFigure
   return evaluation;
 }
 
-/// A folder of its own, gone afterwards.
 class ReportTest : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("fast_edi_report_test_" + std::to_string(getpid()));
-    fs::remove_all(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   static std::string contentOf(const fs::path& path) {
     std::ifstream file(path);
     std::ostringstream text;
@@ -53,7 +48,8 @@ class ReportTest : public testing::Test {
     return text.str();
   }
 
-  fs::path folder_;
+  TemporaryDirectory directory_;
+  std::string folder_ = directory_.file("report");
   Evaluation one_ = evaluationWith("one", {frameWith(20.0, 26.0), frameWith(22.0, 28.0)});
   Evaluation two_ = evaluationWith("two", {frameWith(30.0, 31.0)});
 };
@@ -86,7 +82,7 @@ TEST_F(ReportTest, TablesHaveWhatWasMeasuredAndNothingElse) {
 
 TEST_F(ReportTest, ThePageNamesOnlyPicturesThatExist) {
   one_.left_out["no event stream"] = 2;
-  const std::string page = writeReport(folder_.string(), {"A title", "the command", {"a note"}},
+  const std::string page = writeReport(folder_, {"A title", "the command", {"a note"}},
                                        {{"first half", {&one_}}, {"second half", {&one_, &two_}}});
   const std::string text = contentOf(page);
   EXPECT_THAT(text, HasSubstr("# A title"));
@@ -96,21 +92,18 @@ TEST_F(ReportTest, ThePageNamesOnlyPicturesThatExist) {
   int pictures = 0;
   for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
     const std::size_t end = text.find(')', at);
-    const fs::path picture = folder_ / text.substr(at + 2, end - at - 2);
+    const fs::path picture = fs::path(folder_) / text.substr(at + 2, end - at - 2);
     EXPECT_FALSE(cv::imread(picture.string()).empty()) << picture;
     ++pictures;
   }
   EXPECT_EQ(pictures, 2 * 2 + 3);
-  EXPECT_THAT(contentOf(folder_ / "figures.csv"), HasSubstr("first half,one,0,"));
+  EXPECT_THAT(contentOf(fs::path(folder_) / "figures.csv"), HasSubstr("first half,one,0,"));
 }
 
 TEST_F(ReportTest, NamesAFolderThatCannotBeMade) {
-  std::ofstream(folder_.string()) << "a file in the way";
-  EXPECT_THAT(
-      [&] {
-        writeReport(folder_.string(), {}, {{"all", {&one_}}});
-      },
-      testing::ThrowsMessage<std::runtime_error>(HasSubstr(folder_.string())));
+  std::ofstream(folder_) << "a file in the way";
+  const auto write = [&] { writeReport(folder_, {}, {{"all", {&one_}}}); };
+  EXPECT_THAT(messageOf<std::runtime_error>(write), HasSubstr(folder_));
 }
 
 TEST(PlotTest, DrawsInSeriesColoursAndLeavesGaps) {

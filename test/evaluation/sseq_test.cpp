@@ -3,10 +3,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 
 #include <gmock/gmock.h>
 
+#include "evaluation/message_of.hpp"
 #include "evaluation/test_images.hpp"
 #include "fast_edi/evaluation/capability.hpp"
 
@@ -82,8 +84,8 @@ TEST(SseqTest, NamesWhatIsMissing) {
     EXPECT_THROW(Sseq("/nonexistent"), UnavailableError);
     return;
   }
-  EXPECT_THAT([] { Sseq("/nonexistent"); }, testing::ThrowsMessage<std::runtime_error>(
-                                                testing::HasSubstr("/nonexistent/feature_range")));
+  EXPECT_THAT(messageOf<std::runtime_error>([] { Sseq("/nonexistent"); }),
+              testing::HasSubstr("/nonexistent/feature_range"));
 }
 
 TEST(SseqTest, WithAModelBlurAndNoiseRaiseTheScore) {

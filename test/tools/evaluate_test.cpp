@@ -1,0 +1,109 @@
+/// The program `evaluate`, run as a user runs it.
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+
+#include "support/command.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace fast_edi {
+namespace {
+
+using fast_edi::testing::CommandResult;
+using fast_edi::testing::runCommand;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kTool = std::string(FAST_EDI_TOOLS_DIR) + "/evaluate ";
+const std::string kThresholds = " contrast_threshold_on:=0.2609 contrast_threshold_off:=0.2415";
+
+std::string contentOf(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+class EvaluateTest : public ::testing::Test {
+ protected:
+  /// A short recording with truth.
+  std::string simulate(const std::string& options = "") {
+    const std::string bag = directory_.file("short.bag");
+    const CommandResult result =
+        runCommand(std::string(FAST_EDI_TOOLS_DIR) + "/simulate_davis --out " + bag +
+                   " --frames 3 --seed 5 " + options);
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    return bag;
+  }
+  CommandResult evaluate(const std::string& arguments) const {
+    return runCommand(kTool + arguments + " --output " + directory_.file("report"));
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(EvaluateTest, HelpNamesWhatItTakes) {
+  const CommandResult result = runCommand(kTool + "--help");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.output, HasSubstr("--sequences"));
+  EXPECT_THAT(result.output, HasSubstr("--sseq-model"));
+}
+
+TEST_F(EvaluateTest, ARecordingWithTruthGivesTableAndPage) {
+  const CommandResult result = evaluate(simulate() + kThresholds);
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("| PSNR [dB] |"));
+  EXPECT_THAT(result.output, HasSubstr("| inliers ORB |"));
+  EXPECT_THAT(result.output, HasSubstr("Not measured: SSEQ: no model folder was given"));
+  const std::string page = contentOf(directory_.file("report/report.md"));
+  EXPECT_THAT(page, HasSubstr("short.bag: 3 frames compared"));
+  EXPECT_THAT(page, HasSubstr("rosrun fast_edi evaluate"));
+  EXPECT_TRUE(std::filesystem::exists(directory_.file("report/example_short_bag.png")));
+}
+
+TEST_F(EvaluateTest, WithoutTruthItSaysSo) {
+  const CommandResult result =
+      evaluate(simulate() + kThresholds + " --truth /none --full-reference-only");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("No true frames on /none: no PSNR, no SSIM"));
+  EXPECT_THAT(result.output, Not(HasSubstr("| PSNR")));
+}
+
+TEST_F(EvaluateTest, ACutRecordingIsEvaluatedAsFarAsItGoes) {
+  const std::string bag = simulate();
+  std::filesystem::resize_file(bag, std::filesystem::file_size(bag) * 4 / 5);
+  const CommandResult result = evaluate(bag + kThresholds + " --full-reference-only");
+  EXPECT_EQ(result.exit_code, 2) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("warning: " + bag));
+}
+
+TEST_F(EvaluateTest, SequencesAreReportedByHalves) {
+  const CommandResult result = evaluate("--sequences --frames 1 --seeds 1 --full-reference-only");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("sequences for tuning"));
+  EXPECT_THAT(result.output, HasSubstr("sequences not tuned on"));
+  EXPECT_THAT(result.output, HasSubstr("| flat-spin/1 |"));
+}
+
+TEST_F(EvaluateTest, NamesWhatIsWrong) {
+  const auto fails = [this](const std::string& arguments, const std::string& message) {
+    const CommandResult result = evaluate(arguments);
+    EXPECT_EQ(result.exit_code, 1) << arguments;
+    EXPECT_THAT(result.output, HasSubstr(message));
+  };
+  fails("", "expected either a BAG or --sequences");
+  fails("a.bag b.bag" + kThresholds, "one recording at a time");
+  fails("/nonexistent.bag" + kThresholds, "/nonexistent.bag");
+  fails("/nonexistent.bag", "contrast_threshold_on");
+  fails("--sequences --frames 0", "at least one frame");
+  fails("--sequences --threshold-factor 0", "--threshold-factor");
+  fails("--sequences --sseq-model /nonexistent", "/nonexistent/feature_range.txt");
+  const std::string bag = simulate();
+  fails(bag + kThresholds + " --image /none", "/none");
+}
+
+}  // namespace
+}  // namespace fast_edi
