@@ -13,6 +13,7 @@
 #include "fast_edi/core/exposure_pairing.hpp"
 #include "fast_edi/core/exposure_window.hpp"
 #include "fast_edi/core/latent_image.hpp"
+#include "fast_edi/core/latent_video.hpp"
 #include "fast_edi/core/window_predictor.hpp"
 
 namespace fast_edi {
@@ -74,7 +75,8 @@ class Deblurrer::Impl {
         pairing_(parameters.close_timeout_ns, counters_),
         events_(limitsOf(parameters), counters_,
                 [this](StreamBreak kind, std::int64_t next_ns) { beforeBreak(kind, next_ns); }),
-        latent_image_(parameters.filter) {}
+        latent_image_(parameters.filter),
+        video_(sink, latent_image_) {}
 
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                  std::int64_t now_ns);
@@ -135,6 +137,7 @@ class Deblurrer::Impl {
   std::uint64_t integral_generation_ = 0;
   std::vector<float> gain_;
   LatentImage latent_image_;
+  LatentVideo video_;
   std::optional<Expectation> expectation_;
 };
 
@@ -211,6 +214,7 @@ void Deblurrer::Impl::pause() {
   events_.restart();
   pairing_.restart();
   expectation_.reset();
+  video_.breakOff();
   beginFrameEpoch(false);
 }
 
@@ -235,6 +239,7 @@ void Deblurrer::Impl::setParameters(const DeblurParameters& parameters) {
     expectation_.reset();
   }
   latent_image_.setParameters(parameters_.filter);
+  video_.breakOff();
   expectNext();
 }
 
@@ -244,7 +249,7 @@ DeblurStatus Deblurrer::Impl::status() const {
   status.events_seen = events_.seen();
   status.sensor_size = frame_size_;
   status.buffer_bytes = events_.memoryBytes() + gain_.capacity() * sizeof(float) +
-                        (integral_ ? integral_->memoryBytes() : 0);
+                        video_.memoryBytes() + (integral_ ? integral_->memoryBytes() : 0);
   if (events_.lists() != nullptr) {
     status.buffered_events = events_.lists()->eventCount();
     status.sensor_size = events_.lists()->size();
@@ -394,6 +399,12 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
       window.start_ns + (exposure.at(parameters_.reference) - exposure.start_ns);
   const CloseReport report = integral_->close(*events_.lists(), window, reference_ns, gain_.data());
   expectation_.reset();
+  const bool wants_video = parameters_.latent.isOn() && sink_.wantsLatentImages();
+  if (wants_video) {
+    video_.take(output, output_epoch_, gain_, reference_ns, parameters_);
+  } else {
+    video_.breakOff();
+  }
   const MutableImageView out = sink_.begin(output.input);
   latent_image_.write(output.input.image, gain_.data(), parameters_.response, out);
 
@@ -405,9 +416,13 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
   output.deblurred = true;
   output.events = report.events;
   sink_.finish(output);
+  if (wants_video) {  // behind the frame itself, which somebody waits for
+    counters_.latent_images += video_.write(events_, parameters_);
+  }
 }
 
 void Deblurrer::Impl::passThrough(OutputFrame& output, PassReason reason) {
+  video_.breakOff();
   copyImage(output.input.image, sink_.begin(output.input));
   ++counters_.frames_passed[static_cast<std::size_t>(reason)];
   output.pass_reason = reason;

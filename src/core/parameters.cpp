@@ -36,6 +36,7 @@ void validate(const DeblurParameters& parameters) {
   if (parameters.max_buffered_events < 1) {
     throw std::invalid_argument("max_buffered_events is 0, expected 1 or more");
   }
+  validate(parameters.latent);
   validate(parameters.filter);
 }
 

@@ -24,12 +24,54 @@ struct RecordedFrame {
   }
 };
 
+/// One image of the high-rate video with a copy of its pixels.
+struct RecordedLatent {
+  std::int64_t stamp_ns = 0;
+  std::int64_t source_ns = 0;  ///< input stamp of the frame that it was computed from
+  std::size_t frames = 0;      ///< that had been finished before
+  std::vector<std::uint8_t> pixels;
+};
+
 /// Keeps all outputs. Checks that begin() and finish() come in pairs.
 class RecordingSink : public FrameSink {
  public:
   MutableImageView begin(const InputFrame& input) override {
+    open();
+    return memoryFor(input);
+  }
+
+  void finish(const OutputFrame& output) override {
+    close();
+    outputs.push_back({output, memory_});
+  }
+
+  bool wantsLatentImages() const override { return wants_latent_images; }
+  MutableImageView beginLatent(const InputFrame& input) override {
+    open();
+    return memoryFor(input);
+  }
+  void finishLatent(const InputFrame& input, std::int64_t stamp_ns) override {
+    close();
+    latent_images.push_back({stamp_ns, input.stamp_ns, outputs.size(), memory_});
+  }
+
+  bool isBalanced() const { return balanced_ && !open_; }
+
+  std::vector<RecordedFrame> outputs;
+  bool wants_latent_images = false;
+  std::vector<RecordedLatent> latent_images;
+
+ private:
+  void open() {
     balanced_ = balanced_ && !open_;
     open_ = true;
+  }
+  void close() {
+    balanced_ = balanced_ && open_;
+    open_ = false;
+  }
+
+  MutableImageView memoryFor(const InputFrame& input) {
     if (input.image.data == nullptr) {
       memory_.clear();
       return {};
@@ -40,17 +82,6 @@ class RecordingSink : public FrameSink {
     return {memory_.data(), input.image.size, step, input.image.format};
   }
 
-  void finish(const OutputFrame& output) override {
-    balanced_ = balanced_ && open_;
-    open_ = false;
-    outputs.push_back({output, memory_});
-  }
-
-  bool isBalanced() const { return balanced_ && !open_; }
-
-  std::vector<RecordedFrame> outputs;
-
- private:
   std::vector<std::uint8_t> memory_;
   bool open_ = false;
   bool balanced_ = true;

@@ -6,6 +6,8 @@
 ///     frames ------> ExposureWindow (window known) ---+-> DoubleIntegral -> CameraResponse -> sink
 ///     exposures ---> ExposurePairing --^
 ///
+/// When the sink wants a high-rate video, LatentVideo computes it behind each deblurred frame.
+///
 /// Frames wait in one queue and leave it in the order of their arrival. WindowPredictor tells
 /// DoubleIntegral beforehand which window comes next.
 ///
@@ -22,41 +24,11 @@
 
 #include "fast_edi/core/deblur_counters.hpp"
 #include "fast_edi/core/event_wire.hpp"
-#include "fast_edi/core/image.hpp"
+#include "fast_edi/core/frame_sink.hpp"
 #include "fast_edi/core/parameters.hpp"
 #include "fast_edi/core/types.hpp"
 
 namespace fast_edi {
-
-/// A frame as it came in. `owner` keeps the memory behind `image` alive and lets the sink find the
-/// message it came from. The view of a frame that is not supported may be empty.
-struct InputFrame {
-  std::int64_t stamp_ns = 0;
-  ImageView image;
-  bool supported = true;  ///< false: the encoding is not one we deblur; passed through
-  std::shared_ptr<const void> owner;
-};
-
-/// What became of a frame.
-struct OutputFrame {
-  InputFrame input;
-  std::int64_t stamp_ns = 0;  ///< stamp of the output image
-  bool deblurred = false;     ///< false: the output is a copy of the input
-  PassReason pass_reason = PassReason::kPassthroughParameter;  ///< when !deblurred
-  ExposureInterval exposure;  ///< in frame time; zero length when not known
-  std::uint64_t events = 0;   ///< events inside the exposure
-};
-
-/// Receives the output. Called from within the Deblurrer's calls.
-class FrameSink {
- public:
-  virtual ~FrameSink() = default;
-  /// Memory for the output of \p input: same size and format, written before finish(). An empty
-  /// view for an empty view: what that frame's output holds is then the sink's own matter.
-  virtual MutableImageView begin(const InputFrame& input) = 0;
-  /// The memory handed out by the last begin() now holds the image that \p output describes.
-  virtual void finish(const OutputFrame& output) = 0;
-};
 
 /// State of the moment, for diagnostics.
 struct DeblurStatus {

@@ -10,6 +10,7 @@
 #include "fast_edi/core/camera_response.hpp"
 #include "fast_edi/core/contrast_threshold.hpp"
 #include "fast_edi/core/latent_image.hpp"
+#include "fast_edi/core/latent_instants.hpp"
 #include "fast_edi/core/types.hpp"
 
 namespace fast_edi {
@@ -30,6 +31,7 @@ struct DeblurParameters {
   std::int64_t max_backward_jump_ns = 500 * kNanosecondsPerMillisecond;
   std::int64_t max_forward_jump_ns = 10'000 * kNanosecondsPerMillisecond;
   CameraResponse response = CameraResponse::linear();
+  LatentSampling latent;  ///< of the high-rate video
   FilterParameters filter;
   bool passthrough = false;  ///< publish every frame unchanged
 };

@@ -1,0 +1,56 @@
+/// \file
+/// The gains of all pixels at any instant near an exposure, from those at one instant of it.
+///
+/// With B the blurry frame, f the reference time, v the latent value that a pixel's events give it
+/// and L(f) = B / E(f) = B * gain(f) (see double_integral.hpp),
+///
+///     L(t) = L(f) * v(t) / v(f)    =>    gain(t) = gain(f) * v(t) / v(f)
+///
+/// and v(t) / v(f) is the product of exp(+c_on) and exp(-c_off) over the pixel's events between f
+/// and t, inverted for t < f. It holds inside the exposure, where gain(t) is 1 / E(t), and beyond
+/// it as far as no event is missing. As everywhere, an event exactly at t comes after t.
+///
+/// Complexity. Each step costs O(events between the last instant and the next + pixels); a film of
+/// n images in order of time O(events + n * pixels). The double integral itself is not computed
+/// again.
+///
+/// Numerics. One double for each pixel, one rounding for each event: equal to
+/// DoubleIntegral::close() at that instant within 1e-6, apart from pixels that leave the range of
+/// double there.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "fast_edi/core/contrast_threshold.hpp"
+#include "fast_edi/core/pixel_event_lists.hpp"
+
+namespace fast_edi {
+
+class LatentGains {
+ public:
+  /// Begins at a frame's reference time.
+  /// \param gain pixelCount gains of DoubleIntegral::close(), not filtered; copied
+  /// \param t_ns the reference time they are for, in event time
+  void start(const float* gain, std::size_t pixel_count, std::int64_t t_ns,
+             ContrastThresholds thresholds);
+
+  /// Goes on, or back, to \p t_ns.
+  /// \param gain pixelCount floats, written, within [DoubleIntegral::kMinGain, kMaxGain]
+  /// \return events walked
+  /// \pre start() was called; the lists, of the same size, hold all events between instant() and
+  ///      \p t_ns
+  std::uint64_t at(const PixelEventLists& lists, std::int64_t t_ns, float* gain);
+
+  /// Instant of the last at() or start(), in event time.
+  std::int64_t instant() const { return t_ns_; }
+  std::size_t memoryBytes() const { return gain_.capacity() * sizeof(double); }
+
+ private:
+  std::int64_t t_ns_ = 0;
+  ContrastThresholds thresholds_;
+  std::vector<double> gain_;  ///< at t_ns_
+};
+
+}  // namespace fast_edi
