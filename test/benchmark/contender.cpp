@@ -28,7 +28,7 @@ class MemorySink : public FrameSink {
 
 class Ours : public Contender {
  public:
-  explicit Ours(SensorSize size) : size_(size), deblurrer_(parameters(), sink_) {}
+  Ours(SensorSize size, bool filter) : size_(size), deblurrer_(parameters(filter), sink_) {}
 
   void begin(const ExposureInterval&) override {}
   void add(const WireEvents& events) override {
@@ -66,10 +66,11 @@ class Ours : public Contender {
   }
 
  private:
-  static DeblurParameters parameters() {
+  static DeblurParameters parameters(bool filter) {
     DeblurParameters parameters;
     parameters.thresholds = kThresholds;
     parameters.max_buffered_events = kMaxBufferedEvents;
+    parameters.filter.enabled = filter;
     parameters.filter.enabled = false;
     return parameters;
   }
@@ -135,6 +136,8 @@ const char* toString(Method method) {
   switch (method) {
     case Method::kOurs:
       return "ours";
+    case Method::kOursFiltered:
+      return "ours_filtered";
     case Method::kPaper:
       return "paper";
     case Method::kVanilla:
@@ -146,7 +149,9 @@ const char* toString(Method method) {
 std::unique_ptr<Contender> makeContender(Method method, SensorSize size) {
   switch (method) {
     case Method::kOurs:
-      return std::make_unique<Ours>(size);
+      return std::make_unique<Ours>(size, false);
+    case Method::kOursFiltered:
+      return std::make_unique<Ours>(size, true);
     case Method::kPaper:
       return std::make_unique<Paper>(size);
     case Method::kVanilla:

@@ -40,9 +40,10 @@ class Contender {
 };
 
 enum class Method {
-  kOurs,     ///< the whole pipeline (Deblurrer), time weighting
-  kPaper,    ///< std::vector per pixel of <t, exp value, counter>
-  kVanilla,  ///< the whole image added at every event
+  kOurs,          ///< the whole pipeline (Deblurrer), time weighting, plain EDI
+  kOursFiltered,  ///< the same with the default filters
+  kPaper,         ///< std::vector per pixel of <t, exp value, counter>
+  kVanilla,       ///< the whole image added at every event
 };
 const char* toString(Method method);
 

@@ -33,6 +33,7 @@ void addAll() {
       const StreamSettings settings{scene, kDavis346, events};
       add(Method::kOurs, Exposures::kPeriodic, settings);
       add(Method::kOurs, Exposures::kSurprise, settings);
+      add(Method::kOursFiltered, Exposures::kPeriodic, settings);
       add(Method::kPaper, Exposures::kPeriodic, settings);
     }
     for (const SensorSize size : {kVga, kHd}) {

@@ -114,7 +114,7 @@ std::int64_t frameCount(Method method, const StreamSettings& settings) {
   constexpr double kOursPerSecond = 300e6, kPaperPerSecond = 30e6;
   constexpr std::int64_t kFewest = 7, kMost = 200;
   if (method == Method::kVanilla) return 5;
-  const double events_per_second = method == Method::kOurs ? kOursPerSecond : kPaperPerSecond;
+  const double events_per_second = method == Method::kPaper ? kPaperPerSecond : kOursPerSecond;
   const auto frames = static_cast<std::int64_t>(events_per_second /
                                                 static_cast<double>(settings.events_per_exposure));
   return std::min(std::max(frames, kFewest), kMost);

@@ -142,8 +142,15 @@ def tcpros(results, table):
               '%.2f ms' % found['close_p99_ms'], found['close_p99_ms'] <= 5)
     table.add('nodelet at 13 Mev/s, share of one core', '<= 15 %',
               '%.1f %%' % (100 * found['cpu_share']), found['cpu_share'] <= 0.15)
-    table.add('nodelet at 13 Mev/s, resident memory (peak)', '<= 150 MB',
+    found = results.tcpros.get('13 Mev/s, default parameters')
+    if found is None:
+        table.missing('nodelet at 13 Mev/s, default parameters', '')
+        return
+    table.add('nodelet at 13 Mev/s, default parameters, resident memory (peak)', '<= 150 MB',
               '%.0f MB' % found['peak_resident_mb'], found['peak_resident_mb'] <= 150)
+    table.add('  closing until published p50, p99, share of one core', '',
+              '%.2f ms, %.2f ms, %.1f %%' % (found['close_p50_ms'], found['close_p99_ms'],
+                                             100 * found['cpu_share']))
 
 
 def bags(results, table):
@@ -161,6 +168,12 @@ def also_measured(results, table):
         rate = results.get('wire_decoding/' + name, 'items_per_second')
         if rate is not None:
             table.add('wire decoding, ' + name.replace('_', ' '), '', '%.0f Mev/s' % (rate / 1e6))
+    for events in EVENTS:
+        name = 'end_to_end/ours_filtered/periodic/uniform/%s/%d' % (DAVIS, events)
+        if name in results.benchmarks:
+            table.add('with the default filters, uniform, %.1f M events' % (events / 1e6), '',
+                      '%.0f Mev/s, close %.2f ms' % (results.get(name, 'Mev_per_s'),
+                                                     results.get(name, 'close_ms')))
     for scene in ('hot_pixel', 'bursts'):
         rates = [results.get('end_to_end/%s/periodic/%s/%s/1000000' % (method, scene, DAVIS),
                              'Mev_per_s') for method in ('ours', 'paper')]

@@ -30,14 +30,15 @@ LOST_BY_RECEIVER = ('Events late', 'Events overflowed', 'Events glitched', 'Even
 
 
 class Case:
-    """What the load generator sends."""
+    """What the load generator sends. Plain EDI unless `defaults`."""
 
-    def __init__(self, name, rate_mev_s, array_ms, seconds, unpaced=False):
+    def __init__(self, name, rate_mev_s, array_ms, seconds, unpaced=False, defaults=False):
         self.name = name
         self.rate_mev_s = rate_mev_s
         self.array_ms = array_ms
         self.seconds = seconds
         self.unpaced = unpaced
+        self.defaults = defaults
 
     def arguments(self):
         arguments = ['--rate', str(self.rate_mev_s), '--array', str(self.array_ms),
@@ -131,6 +132,10 @@ class Diagnostics:
 def measure(case, nodelet_processor, other_processors):
     rospy.set_param(NODELET + '/contrast_threshold_on', 0.3)
     rospy.set_param(NODELET + '/contrast_threshold_off', 0.3)
+    if rospy.has_param(NODELET + '/filter'):
+        rospy.delete_param(NODELET + '/filter')
+    if not case.defaults:
+        rospy.set_param(NODELET + '/filter', False)
     nodelet = [find_program('nodelet', 'nodelet'), 'standalone', 'fast_edi/DeblurNodelet',
                '__ns:=' + NAMESPACE, '__name:=' + NODELET.rsplit('/', 1)[1]]
     generator = [find_program('fast_edi', 'event_load_generator'), '__ns:=' + NAMESPACE]
@@ -202,6 +207,7 @@ def main():
         Case('as fast as it goes, arrays of 10 ms', 100, 10, arguments.seconds, unpaced=True),
         Case('as fast as it goes, arrays of 33 ms', 40, 33, arguments.seconds, unpaced=True),
         Case('13 Mev/s, arrays of 10 ms', 13, 10, arguments.latency_seconds),
+        Case('13 Mev/s, default parameters', 13, 10, arguments.seconds, defaults=True),
     ]
     processors = sorted(os.sched_getaffinity(0))
     nodelet_processor, other_processors = processors[0], set(processors[1:] or processors)
