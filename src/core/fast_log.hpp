@@ -15,13 +15,13 @@ namespace fast_edi {
 namespace fast_log_detail {
 
 inline std::int32_t bitsOf(float value) {
-  std::int32_t bits;
+  std::int32_t bits = 0;
   std::memcpy(&bits, &value, sizeof(bits));
   return bits;
 }
 
 inline float floatOf(std::int32_t bits) {
-  float value;
+  float value = 0.0F;
   std::memcpy(&value, &bits, sizeof(value));
   return value;
 }

@@ -19,7 +19,7 @@ struct IntervalClock {
 /// The results of all pixels over one interval: integral_i = sum_i + value_i clock.end -
 /// clock.start.
 struct IntervalSums {
-  PixelSums* sums;
+  PixelSums* sums = nullptr;
   IntervalClock clock;
 };
 

@@ -100,7 +100,7 @@ void EvaluationRecorder::add(const ComparedFrame& frame) {
     evaluation_.example = images;
     evaluation_.example_stamp_ns = frame.stamp_ns;
   }
-  evaluation_.frames.push_back(std::move(figures));
+  evaluation_.frames.push_back(figures);
 }
 
 }  // namespace fast_edi

@@ -67,14 +67,14 @@ int paddingToBlocks(int length) {
 cv::Mat1d normalizedCoefficients(const cv::Mat& image) {
   cv::Mat1d values;
   image.convertTo(values, CV_64F);
-  const auto localMean = [](const cv::Mat1d& of) {
+  const auto local_mean = [](const cv::Mat1d& of) {
     cv::Mat1d mean;
     cv::GaussianBlur(of, mean, {kWindowPx, kWindowPx}, kWindowSigmaPx, kWindowSigmaPx,
                      cv::BORDER_REPLICATE);
     return mean;
   };
-  const cv::Mat1d mean = localMean(values);
-  const cv::Mat1d variance = cv::abs(localMean(values.mul(values)) - mean.mul(mean));
+  const cv::Mat1d mean = local_mean(values);
+  const cv::Mat1d variance = cv::abs(local_mean(values.mul(values)) - mean.mul(mean));
   cv::Mat1d deviation;
   cv::sqrt(variance, deviation);
   return (values - mean) / (deviation + 1.0);

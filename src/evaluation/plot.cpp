@@ -120,7 +120,7 @@ cv::Mat linePlot(const PlotLabels& labels, const std::vector<PlotSeries>& series
   for (const PlotSeries& line : series) {
     count = std::max(count, line.values.size());
   }
-  const auto xOf = [&](std::size_t index) {
+  const auto x_of = [&](std::size_t index) {
     return count < 2 ? kLeftPx + kPlotWidthPx / 2
                      : kLeftPx + static_cast<int>(index * kPlotWidthPx / (count - 1));
   };
@@ -130,10 +130,10 @@ cv::Mat linePlot(const PlotLabels& labels, const std::vector<PlotSeries>& series
       if (!values[i]) {
         continue;
       }
-      const cv::Point at(xOf(i), frame.y(*values[i]));
+      const cv::Point at(x_of(i), frame.y(*values[i]));
       cv::circle(frame.canvas, at, 3, seriesColor(s), cv::FILLED, cv::LINE_AA);
       if (i > 0 && values[i - 1]) {
-        cv::line(frame.canvas, {xOf(i - 1), frame.y(*values[i - 1])}, at, seriesColor(s), 2,
+        cv::line(frame.canvas, {x_of(i - 1), frame.y(*values[i - 1])}, at, seriesColor(s), 2,
                  cv::LINE_AA);
       }
     }

@@ -22,7 +22,7 @@ constexpr std::size_t kSearchBlockBytes = 1 << 20;
 constexpr std::size_t kMaxChunkHeaderBytes = 128;
 
 std::uint32_t length(const std::uint8_t* bytes) {
-  std::uint32_t value;
+  std::uint32_t value = 0;
   std::memcpy(&value, bytes, sizeof(value));
   return value;
 }

@@ -70,19 +70,19 @@ cv::Mat1b tagCells(int id) {
 std::vector<PlacedTag> placeTags(int count, double side_px, SensorSize view, RandomEngine& random) {
   std::vector<PlacedTag> tags;
   if (count <= 0) return tags;
-  const auto rowsFor = [count](int columns) { return (count + columns - 1) / columns; };
+  const auto rows_for = [count](int columns) { return (count + columns - 1) / columns; };
   // As many columns as leave every tag the most room.
   int columns = 1;
   double room = 0.0;
   for (int candidate = 1; candidate <= count; ++candidate) {
     const double candidate_room = std::min(static_cast<double>(view.width) / candidate,
-                                           static_cast<double>(view.height) / rowsFor(candidate));
+                                           static_cast<double>(view.height) / rows_for(candidate));
     if (candidate_room > room) {
       room = candidate_room;
       columns = candidate;
     }
   }
-  const int rows = rowsFor(columns);
+  const int rows = rows_for(columns);
   // A turned sheet of paper needs more room than a straight one.
   const double sheet = side_px * kTagPaperFactor * (std::cos(kMaxTurnRad) + std::sin(kMaxTurnRad));
   const double cell_height = static_cast<double>(view.height) / rows;

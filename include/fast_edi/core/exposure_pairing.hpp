@@ -69,7 +69,7 @@ class ExposurePairing {
   };
   struct WaitingMessage {
     std::optional<std::int64_t> length_ns;
-    std::int64_t arrival_ns;
+    std::int64_t arrival_ns = 0;
   };
 
   std::optional<std::int64_t> read(std::int32_t exposure_us);
