@@ -85,8 +85,6 @@ namespace event_array_detail {
 
 /// What identifies the message, shared by both C++ types.
 constexpr char kMd5Sum[] = "5e8beee5a6c107e504c2e78903c224b8";
-constexpr std::uint64_t kMd5SumHigh = 0x5e8beee5a6c107e5ULL;
-constexpr std::uint64_t kMd5SumLow = 0x04c2e78903c224b8ULL;
 constexpr char kDataType[] = "dvs_msgs/EventArray";
 constexpr char kDefinition[] =
     "Header header\n"
@@ -111,8 +109,6 @@ template <typename Array>
 struct Md5Trait {
   static const char* value() { return kMd5Sum; }
   static const char* value(const Array&) { return kMd5Sum; }
-  static const std::uint64_t static_value1 = kMd5SumHigh;
-  static const std::uint64_t static_value2 = kMd5SumLow;
 };
 
 template <typename Array>

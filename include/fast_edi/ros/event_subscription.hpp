@@ -37,6 +37,7 @@ class EventSubscription {
   /// \param handler called from \p nh's callback queue
   EventSubscription(const ros::NodeHandle& nh, const std::string& topic, std::uint32_t queue_size,
                     Handler handler);
+  ~EventSubscription() = default;
   EventSubscription(const EventSubscription&) = delete;
   EventSubscription& operator=(const EventSubscription&) = delete;
 
