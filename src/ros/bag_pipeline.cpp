@@ -1,73 +1,16 @@
 #include "fast_edi/ros/bag_pipeline.hpp"
 
-#include <cstddef>
+#include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include <ros/serialization.h>
 #include <std_msgs/Int32.h>
-#include <boost/make_shared.hpp>
 
+#include "fast_edi/ros/bag_deserialise.hpp"
 #include "fast_edi/ros/event_array.hpp"
 
 namespace fast_edi {
-namespace {
-
-using ros::serialization::IStream;
-
-IStream streamOf(const BagMessage& message) {
-  // IStream only reads, but wants to be able to write.
-  return {const_cast<std::uint8_t*>(message.data), message.size};
-}
-
-/// Throws unless as many elements as stated follow. roscpp makes room for a stated length before it
-/// looks whether the message is that long, which a damaged bag would turn into gigabytes.
-void requireStatedLength(IStream& stream, std::size_t element_bytes) {
-  std::uint32_t count = 0;
-  stream.next(count);
-  if (std::uint64_t{count} * element_bytes > stream.getLength()) {
-    ros::serialization::throwStreamOverrun();
-  }
-}
-
-void requireLengths(IStream stream, sensor_msgs::Image image) {
-  stream.next(image.header);
-  stream.next(image.height);
-  stream.next(image.width);
-  stream.next(image.encoding);
-  stream.next(image.is_bigendian);
-  stream.next(image.step);
-  requireStatedLength(stream, sizeof(std::uint8_t));
-}
-
-void requireLengths(IStream stream, sensor_msgs::CameraInfo info) {
-  stream.next(info.header);
-  stream.next(info.height);
-  stream.next(info.width);
-  stream.next(info.distortion_model);
-  requireStatedLength(stream, sizeof(double));
-}
-
-/// \throws ros::serialization::StreamOverrunException
-template <typename Message>
-boost::shared_ptr<Message> readVariable(const BagMessage& raw) {
-  const boost::shared_ptr<Message> message = boost::make_shared<Message>();
-  IStream stream = streamOf(raw);
-  requireLengths(stream, Message());
-  stream.next(*message);
-  return message;
-}
-
-/// \throws ros::serialization::StreamOverrunException
-template <typename Message>
-Message readFixed(const BagMessage& raw) {
-  Message message;
-  IStream stream = streamOf(raw);
-  stream.next(message);
-  return message;
-}
-
-}  // namespace
-
 BagPipeline::BagPipeline(const TopicNames& topics, const LoadedParameters& parameters)
     : topics_(topics),
       camera_info_topic_(topics.cameraInfo()),
@@ -81,9 +24,10 @@ BagPipeline::BagPipeline(const TopicNames& topics, const LoadedParameters& param
       deblurrer_(parameters.deblur, sink_) {}
 
 bool BagPipeline::add(const BagMessage& message) {
-  const auto now_ns = static_cast<std::int64_t>(message.time.toNSec());
-  deblurrer_.advance(now_ns);
-  return use(message, now_ns);
+  // A damaged record time must not turn the clock back.
+  now_ns_ = std::max(now_ns_, static_cast<std::int64_t>(message.time.toNSec()));
+  deblurrer_.advance(now_ns_);
+  return use(message);
 }
 
 void BagPipeline::finish() {
@@ -107,28 +51,28 @@ BagPipeline::Use BagPipeline::useOf(const BagConnection& connection) const {
   return connection.topic == camera_info_topic_ ? Use::kCameraInfo : Use::kNone;
 }
 
-bool BagPipeline::use(const BagMessage& message, std::int64_t now_ns) {
+bool BagPipeline::use(const BagMessage& message) {
   try {
     switch (useOf(*message.connection)) {
       case Use::kEvents: {
-        const EventArrayView array = readFixed<EventArrayView>(message);
-        deblurrer_.addEvents(array.events(), sensorSize(array), array.header.seq, now_ns);
+        const auto array = deserialise<EventArrayView>(message);
+        deblurrer_.addEvents(array->events(), sensorSize(*array), array->header.seq, now_ns_);
         break;
       }
       case Use::kImage: {
-        const sensor_msgs::ImageConstPtr image = readVariable<sensor_msgs::Image>(message);
+        const sensor_msgs::ImageConstPtr image = deserialise<sensor_msgs::Image>(message);
         const ImageReading reading = readImage(*image);
         if (reading.verdict == ImageVerdict::kMalformed) {
           return false;
         }
-        deblurrer_.addFrame(makeInputFrame(image, reading, now_ns), now_ns);
+        deblurrer_.addFrame(makeInputFrame(image, reading, now_ns_), now_ns_);
         break;
       }
       case Use::kExposure:
-        deblurrer_.addExposure(readFixed<std_msgs::Int32>(message).data, now_ns);
+        deblurrer_.addExposure(deserialise<std_msgs::Int32>(message)->data, now_ns_);
         break;
       case Use::kCameraInfo:
-        sink_.setCameraInfo(readVariable<sensor_msgs::CameraInfo>(message));
+        sink_.setCameraInfo(deserialise<sensor_msgs::CameraInfo>(message));
         break;
       case Use::kNone:
         break;

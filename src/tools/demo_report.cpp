@@ -20,9 +20,7 @@
 
 #include <cv_bridge/cv_bridge.h>
 #include <diagnostic_msgs/DiagnosticArray.h>
-#include <ros/serialization.h>
 #include <sensor_msgs/image_encodings.h>
-#include <boost/make_shared.hpp>
 #include <boost/program_options.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -30,6 +28,7 @@
 #include "fast_edi/evaluation/comparison_sheet.hpp"
 #include "fast_edi/evaluation/image_metrics.hpp"
 #include "fast_edi/evaluation/tag_count.hpp"
+#include "fast_edi/ros/bag_deserialise.hpp"
 #include "fast_edi/ros/bag_pipeline.hpp"
 #include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/comparison_view.hpp"
@@ -94,14 +93,6 @@ struct PendingFrame {
   bool on_sheet = false;
 };
 
-template <typename Message>
-boost::shared_ptr<Message> deserialise(const BagMessage& raw) {
-  const auto message = boost::make_shared<Message>();
-  ros::serialization::IStream stream(const_cast<std::uint8_t*>(raw.data), raw.size);
-  stream.next(*message);
-  return message;
-}
-
 cv::Mat toMono8(const sensor_msgs::Image& message) {
   // cv_bridge takes 8UC1 for a matrix without colour, which here it is not.
   sensor_msgs::Image image = message;
@@ -135,7 +126,7 @@ class LiveRecording {
     if (found == images_.end()) {
       return nullptr;
     }
-    const sensor_msgs::ImageConstPtr image = found->second;
+    sensor_msgs::ImageConstPtr image = found->second;
     images_.erase(images_.begin(), std::next(found));
     return image;
   }

@@ -44,13 +44,14 @@ class BagPipeline {
   enum class Use { kNone, kEvents, kImage, kExposure, kCameraInfo };
 
   Use useOf(const BagConnection& connection) const;
-  bool use(const BagMessage& message, std::int64_t now_ns);
+  bool use(const BagMessage& message);
 
   const TopicNames topics_;
   const std::string camera_info_topic_;
   MessageFrameSink sink_;
   Deblurrer deblurrer_;
   std::vector<Output> outputs_;
+  std::int64_t now_ns_ = 0;  ///< the bag's record time
 };
 
 }  // namespace fast_edi
