@@ -174,6 +174,12 @@ def also_measured(results, table):
             table.add('with the default filters, uniform, %.1f M events' % (events / 1e6), '',
                       '%.0f Mev/s, close %.2f ms' % (results.get(name, 'Mev_per_s'),
                                                      results.get(name, 'close_ms')))
+    for way in ('pointer', 'serialised'):
+        for events in (130000, 430000):
+            rate = results.get('intra_process/%s/%d' % (way, events), 'items_per_second')
+            if rate is not None:
+                table.add('array of %d k events within a manager, %s' % (events / 1000, way), '',
+                          '%.1f ns per event' % (1e9 / rate))
     for scene in ('hot_pixel', 'bursts'):
         rates = [results.get('end_to_end/%s/periodic/%s/%s/1000000' % (method, scene, DAVIS),
                              'Mev_per_s') for method in ('ours', 'paper')]
