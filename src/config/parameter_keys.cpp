@@ -13,6 +13,7 @@ constexpr NumberRange kTimeOffsetUs{-3e15, 3e15};  // either clock may start at 
 constexpr NumberRange kTimeoutMs{0.0, 60e3, true};
 constexpr NumberRange kJumpMs{0.0, 3600e3, true};
 constexpr NumberRange kBufferedEvents{1.0, 4e9};
+constexpr NumberRange kLatentImages{0.0, kMaxLatentImages};
 constexpr NumberRange kOffsetDn{0.0, 255.0};
 constexpr NumberRange kFilterRange{0.0, 10.0, true};
 constexpr NumberRange kFilterSigmaPx{0.0, 10.0, true};
@@ -111,6 +112,16 @@ ConfigKey maxBufferedEventsKey() {
       });
 }
 
+ConfigKey latentImagesKey() {
+  return integerKey(
+      {"latent_images", "images per exposure", std::to_string(LatentSampling{}.per_exposure),
+       "high-rate video on `latent/image_raw`: latent images of each exposure, evenly spaced, "
+       "and at most as many of the gap before it where events bridge that; 0 = off"},
+      kLatentImages, [](std::int64_t value, ParameterDraft& draft) {
+        draft.loaded.deblur.latent.per_exposure = static_cast<int>(value);
+      });
+}
+
 /// What goes beyond plain EDI: one switch for all of it, then piece by piece.
 std::vector<ConfigKey> filterKeys() {
   const FilterParameters defaults;
@@ -193,6 +204,7 @@ std::vector<ConfigKey> buildTopLevelKeys() {
       numberKey(
           {"response_offset_dn", "DN", "0", "offset d of the linear response, exposure = DN + d"},
           kOffsetDn, [](double value, ParameterDraft& draft) { draft.response_offset_dn = value; }),
+      latentImagesKey(),
       textKey({"frame_id", "", "\"\"", "replaces an empty frame_id of the input images"},
               [](const std::string& value, ParameterDraft& draft) {
                 draft.loaded.ros.frame_id = value;

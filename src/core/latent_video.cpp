@@ -21,6 +21,7 @@ void LatentVideo::take(const OutputFrame& output, std::uint64_t epoch,
   }
   current_.input = output.input;
   current_.exposure = output.exposure;
+  current_.offset_ns = parameters.time_offset_ns;
   current_.epoch = epoch;
   current_.gains.start(gain.data(), gain.size(), reference_ns, parameters.thresholds);
   has_current_ = true;
@@ -59,12 +60,11 @@ std::size_t LatentVideo::bridgeGap(const EventStream& events, const DeblurParame
   nearer_last.erase(split, nearer_last.end());
 
   std::size_t images = 0;
-  const std::int64_t offset_ns = parameters.time_offset_ns;
   if (last_.generation == current_.generation &&
-      events.covers({last_.gains.instant(), middle_ns + offset_ns})) {
+      events.covers({last_.gains.instant(), middle_ns + last_.offset_ns})) {
     images += show(last_, nearer_last, events, parameters);
   }
-  if (events.covers({middle_ns + offset_ns, gap.end_ns + offset_ns})) {
+  if (events.covers({middle_ns + current_.offset_ns, gap.end_ns + current_.offset_ns})) {
     images += show(current_, nearer_current, events, parameters);
   }
   return images;
@@ -78,7 +78,7 @@ std::size_t LatentVideo::show(Source& source, const std::vector<std::int64_t>& i
     if (last_stamp_ns_ && t_ns <= *last_stamp_ns_) {
       continue;
     }
-    source.gains.at(*events.lists(), t_ns + parameters.time_offset_ns, gain_.data());
+    source.gains.at(*events.lists(), t_ns + source.offset_ns, gain_.data());
     const MutableImageView out = sink_.beginLatent(source.input);
     latent_image_.write(source.input.image, gain_.data(), parameters.response, out);
     sink_.finishLatent(source.input, t_ns);

@@ -36,6 +36,7 @@ void printSummary(std::ostream& out, const BagDeblurReport& report) {
     printCount(out, counters.frames_passed[reason],
                std::string("of these: ") + toString(static_cast<PassReason>(reason)));
   }
+  printCount(out, counters.latent_images, "latent images beside them");
   printCount(out, counters.frames_suppressed,
              "without output: stamp not later than the one before");
   printCount(out, counters.frames_timed_out, "closed by the timeout");
@@ -67,12 +68,14 @@ void printSummary(std::ostream& out, const BagDeblurReport& report) {
   out.precision(precision);
 }
 
-BagDeblurrer::BagDeblurrer(BagReader& reader, BagWriter& writer, const TopicNames& topics,
+BagDeblurrer::BagDeblurrer(BagReader& reader, BagWriter* writer, const TopicNames& topics,
                            const LoadedParameters& parameters, Progress progress)
     : reader_(reader),
       writer_(writer),
       image_topic_(topics.outputImage()),
       camera_info_topic_(topics.outputCameraInfo()),
+      latent_topic_(topics.outputLatent()),
+      write_latent_(parameters.deblur.latent.rate_hz == 0),
       progress_(std::move(progress)),
       pipeline_(topics, parameters) {}
 
@@ -80,7 +83,9 @@ BagDeblurReport BagDeblurrer::run() {
   const auto start = std::chrono::steady_clock::now();
   BagMessage message;
   while (reader_.next(message)) {
-    writer_.copy(message);
+    if (writer_ != nullptr) {
+      writer_->copy(message);
+    }
     ++report_.messages;
     report_.last_record_time = message.time;
     if (!pipeline_.add(message)) {
@@ -99,8 +104,18 @@ BagDeblurReport BagDeblurrer::run() {
 
 void BagDeblurrer::writeOutputs(const ros::Time& record_time) {
   for (const BagPipeline::Output& output : pipeline_.takeOutputs()) {
-    writer_.write(image_topic_, record_time, *output.image);
-    writer_.write(camera_info_topic_, record_time, *output.info);
+    if (writer_ != nullptr) {
+      writer_->write(image_topic_, record_time, *output.image);
+      writer_->write(camera_info_topic_, record_time, *output.info);
+      for (const sensor_msgs::ImagePtr& latent : output.latent) {
+        if (write_latent_) {
+          writer_->write(latent_topic_, record_time, *latent);
+        }
+      }
+    }
+    if (output_handler_) {
+      output_handler_(output);
+    }
     ++report_.outputs;
   }
 }

@@ -19,9 +19,14 @@ BagPipeline::BagPipeline(const TopicNames& topics, const LoadedParameters& param
                    const OutputFrame& frame) {
               // Only kept here: the pipeline's calls must not throw, and writing to a full disk
               // does.
-              outputs_.push_back({image, info, frame});
+              outputs_.push_back({image, info, frame, {}});
             }),
-      deblurrer_(parameters.deblur, sink_) {}
+      deblurrer_(parameters.deblur, sink_) {
+  sink_.setLatent([] { return true; },
+                  [this](const sensor_msgs::ImagePtr& image) {
+                    outputs_.back().latent.push_back(image);  // its frame came in the same call
+                  });
+}
 
 bool BagPipeline::add(const BagMessage& message) {
   // A damaged record time must not turn the clock back.

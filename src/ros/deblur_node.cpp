@@ -1,5 +1,6 @@
 #include "fast_edi/ros/deblur_node.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <stdexcept>
@@ -22,6 +23,8 @@ constexpr std::uint32_t kImageQueue = 100;
 constexpr std::uint32_t kExposureQueue = 100;
 constexpr std::uint32_t kLatestWins = 1;
 constexpr std::uint32_t kOutputQueue = 100;
+/// Frames whose latent images fit into their queue. One brings up to twice `latent_images` at once.
+constexpr int kLatentQueueFrames = 2;
 /// A fraction of the shortest sensible close timeout.
 const ros::WallDuration kAdvancePeriod(0.004);
 const ros::WallDuration kReportPeriod(1.0);
@@ -67,6 +70,7 @@ DeblurNode::~DeblurNode() {
   advance_timer_.stop();
   deblurred_publisher_.shutdown();
   comparison_publisher_.shutdown();
+  latent_publisher_.shutdown();
   inputs_.reset();
 }
 
@@ -76,6 +80,9 @@ void DeblurNode::configure() {
     sink_.emplace(parameters_.ros.frame_id,
                   [this](const sensor_msgs::ImagePtr& image, const sensor_msgs::CameraInfoPtr& info,
                          const OutputFrame& output) { deliver(image, info, output); });
+    sink_->setLatent(
+        [this] { return latent_publisher_.getNumSubscribers() > 0; },
+        [this](const sensor_msgs::ImagePtr& image) { latent_publisher_.publish(image); });
     deblurrer_ = std::make_unique<Deblurrer>(parameters_.deblur, *sink_);
   } catch (const std::exception& error) {
     configuration_error_ = error.what();
@@ -104,6 +111,12 @@ void DeblurNode::advertise() {
                                 info_changed, info_changed);
   comparison_publisher_ =
       transport.advertise("comparison", kLatestWins, image_changed, image_changed);
+  if (parameters_.deblur.latent.isOn()) {
+    const auto queue =
+        static_cast<std::uint32_t>(2 * kLatentQueueFrames * parameters_.deblur.latent.per_exposure);
+    latent_publisher_ = transport.advertise("latent/image_raw", std::max(queue, kOutputQueue),
+                                            image_changed, image_changed);
+  }
 }
 
 std::unique_ptr<DeblurNode::Inputs> DeblurNode::subscribe() {
@@ -139,7 +152,8 @@ void DeblurNode::subscribersChanged() {
       return;
     }
     const bool wanted = deblurred_publisher_.getNumSubscribers() > 0 ||
-                        comparison_publisher_.getNumSubscribers() > 0;
+                        comparison_publisher_.getNumSubscribers() > 0 ||
+                        latent_publisher_.getNumSubscribers() > 0;
     if (wanted && !inputs_) {
       inputs_ = subscribe();
     } else if (!wanted && inputs_) {

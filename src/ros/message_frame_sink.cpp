@@ -37,15 +37,28 @@ MutableImageView MessageFrameSink::begin(const InputFrame& input) {
   return viewOf(*image_, input.image.format);
 }
 
-void MessageFrameSink::finish(const OutputFrame& output) {
-  image_->header.stamp.fromNSec(static_cast<std::uint64_t>(output.stamp_ns));
+void MessageFrameSink::setLatent(std::function<bool()> wanted, DeliverLatent deliver) {
+  latent_wanted_ = std::move(wanted);
+  deliver_latent_ = std::move(deliver);
+}
+
+sensor_msgs::ImagePtr MessageFrameSink::takeImage(std::int64_t stamp_ns) {
+  image_->header.stamp.fromNSec(static_cast<std::uint64_t>(stamp_ns));
   if (image_->header.frame_id.empty()) {
     image_->header.frame_id = frame_id_;
   }
-  const sensor_msgs::CameraInfoPtr info = makeCameraInfo(camera_info_.get(), *image_);
-  const sensor_msgs::ImagePtr image = std::move(image_);
-  image_.reset();
+  return std::exchange(image_, nullptr);
+}
+
+void MessageFrameSink::finish(const OutputFrame& output) {
+  const sensor_msgs::ImagePtr image = takeImage(output.stamp_ns);
+  const sensor_msgs::CameraInfoPtr info = makeCameraInfo(camera_info_.get(), *image);
   deliver_(image, info, output);
+}
+
+void MessageFrameSink::finishLatent(const InputFrame& input, std::int64_t stamp_ns) {
+  static_cast<void>(input);
+  deliver_latent_(takeImage(stamp_ns));
 }
 
 }  // namespace fast_edi

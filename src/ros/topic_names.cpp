@@ -85,6 +85,10 @@ std::string TopicNames::outputCameraInfo() const {
   return (output.empty() ? topicNamespace(image) + "/deblurred" : output) + "/camera_info";
 }
 
+std::string TopicNames::outputLatent() const {
+  return (output.empty() ? topicNamespace(image) : output) + "/latent/image_raw";
+}
+
 std::string checkTopics(const TopicNames& topics, const Connections& connections) {
   std::ostringstream faults;
   check(connections, topics.events, "--events", expected<EventArray>(), true, faults);
@@ -92,7 +96,8 @@ std::string checkTopics(const TopicNames& topics, const Connections& connections
   check(connections, topics.exposure, "--exposure", expected<std_msgs::Int32>(), false, faults);
   check(connections, topics.cameraInfo(), "--camera-info", expected<sensor_msgs::CameraInfo>(),
         false, faults);
-  for (const std::string& output : {topics.outputImage(), topics.outputCameraInfo()}) {
+  for (const std::string& output :
+       {topics.outputImage(), topics.outputCameraInfo(), topics.outputLatent()}) {
     if (has(connections, output)) {
       faults << "topic " << output
              << " is in the bag already: give the output another namespace (--output)\n";

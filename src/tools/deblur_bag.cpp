@@ -1,8 +1,9 @@
 /// \file
-/// `deblur_bag`: a recording in, the same recording with deblurred frames out.
+/// `deblur_bag`: a recording in, the same recording with deblurred frames out, or a film of it.
 
 #include <exception>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "fast_edi/ros/bag_writer.hpp"
 #include "fast_edi/ros/progress_bar.hpp"
 #include "fast_edi/ros/topic_names.hpp"
+#include "fast_edi/video/film_writer.hpp"
 
 namespace {
 
@@ -26,6 +28,7 @@ constexpr int kFailed = 1;
 constexpr int kInputIncomplete = 2;
 /// More notes than this help nobody.
 constexpr std::size_t kMaxDamageNotes = 10;
+constexpr int kDefaultFilmRate_hz = 500;
 
 struct Arguments {
   std::string input;
@@ -35,6 +38,8 @@ struct Arguments {
   fast_edi::TopicNames topics;
   std::vector<std::string> overrides;
   bool overwrite = false;
+  std::string video;
+  int film_rate_hz = kDefaultFilmRate_hz;
 };
 
 po::options_description describeOptions(Arguments& arguments) {
@@ -42,7 +47,13 @@ po::options_description describeOptions(Arguments& arguments) {
   po::options_description options("Options");
   options.add_options()("help,h", "print this")(
       "in", po::value(&arguments.input)->required()->value_name("BAG"), "recording to read")(
-      "out", po::value(&arguments.output)->required()->value_name("BAG"), "recording to write")(
+      "out", po::value(&arguments.output)->value_name("BAG"),
+      "recording to write; needed unless --video is given")(
+      "video", po::value(&arguments.video)->value_name("FILM"),
+      "film to write, in slow motion: .mp4, .mov (MPEG-4) or .avi (Motion JPEG)")(
+      "fps",
+      po::value(&arguments.film_rate_hz)->default_value(arguments.film_rate_hz)->value_name("RATE"),
+      "images of the film for each second of recording; it plays 30 of them a second")(
       "config", po::value(&arguments.config)->value_name("YAML"),
       "parameters, e.g. cfg/davis346.yaml; not needed when both contrast thresholds are given as "
       "name:=value")("events",
@@ -58,17 +69,19 @@ po::options_description describeOptions(Arguments& arguments) {
       "namespace of the deblurred topics; by default `deblurred` beside --image")(
       "compression", po::value(&arguments.compression)->default_value("same")->value_name("KIND"),
       "of the output: none, bz2, lz4, or the same as the input's")(
-      "force", po::bool_switch(&arguments.overwrite), "replace the output if it exists");
+      "force", po::bool_switch(&arguments.overwrite), "replace outputs that exist");
   return options;
 }
 
 void printHelp(const po::options_description& options) {
   std::cout
-      << "Usage: deblur_bag --in IN.bag --out OUT.bag --config cfg/davis346.yaml "
-         "[options] [parameter:=value ...]\n\n"
+      << "Usage: deblur_bag --in IN.bag [--out OUT.bag] [--video OUT.mp4 --fps 500]\n"
+         "                  --config cfg/davis346.yaml [options] [parameter:=value ...]\n\n"
          "Copies a recording and adds its deblurred frames as <image "
          "namespace>/deblurred/image_raw and\n.../camera_info. Parameters given as name:=value "
-         "come before those of the YAML file.\n\n"
+         "come before those of the YAML file.\n"
+         "A film shows latent images at a fixed rate, between exposures too where events bridge\n"
+         "the gap; where they do not, the nearest image is held.\n\n"
       << options
       << "\nExit code: 0 done; 1 failed, no output; 2 the input was cut short or damaged: all "
          "of it that\ncould be read is in the output, which is complete and indexed.\n";
@@ -91,6 +104,13 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   const std::string& kind = arguments.compression;
   if (kind != "same" && !fast_edi::isKnownCompression(kind)) {
     throw po::error("--compression " + kind + ": expected same, none, bz2 or lz4");
+  }
+  if (arguments.output.empty() && arguments.video.empty()) {
+    throw po::error("neither --out nor --video is given: nothing to write");
+  }
+  if (arguments.film_rate_hz < 1 || arguments.film_rate_hz > fast_edi::kMaxLatentRate_hz) {
+    throw po::error("--fps " + std::to_string(arguments.film_rate_hz) + ": expected 1.." +
+                    std::to_string(fast_edi::kMaxLatentRate_hz));
   }
   return true;
 }
@@ -120,8 +140,25 @@ void printDamage(const fast_edi::BagReader& reader, const fast_edi::BagDeblurRep
   }
 }
 
+void printFilm(const fast_edi::FilmReport& film, const std::string& path) {
+  std::cout << "film: " << film.images << " images";
+  if (film.held > 0) {
+    std::cout << ", " << film.held << " of them held for want of a latent image";
+  }
+  if (film.cuts > 0) {
+    std::cout << ", " << film.cuts << " cuts where time jumps";
+  }
+  if (film.left_out > 0) {
+    std::cout << ", " << film.left_out << " images of another size or encoding left out";
+  }
+  std::cout << "\nwritten: " << path << "\n";
+}
+
 int run(const Arguments& arguments) {
-  const fast_edi::LoadedParameters parameters = loadParameters(arguments);
+  fast_edi::LoadedParameters parameters = loadParameters(arguments);
+  if (!arguments.video.empty()) {
+    parameters.deblur.latent.rate_hz = arguments.film_rate_hz;
+  }
   for (const std::string& warning : parameters.warnings) {
     std::cerr << "warning: " << warning << "\n";
   }
@@ -132,18 +169,44 @@ int run(const Arguments& arguments) {
   }
   const std::string compression =
       arguments.compression == "same" ? reader.compression() : arguments.compression;
-  fast_edi::BagWriter writer(arguments.output, arguments.input, compression, arguments.overwrite);
+  std::optional<fast_edi::FilmWriter> film;
+  if (!arguments.video.empty()) {
+    film.emplace(arguments.video, arguments.film_rate_hz, arguments.overwrite);
+  }
+  std::optional<fast_edi::BagWriter> writer;
+  if (!arguments.output.empty()) {
+    writer.emplace(arguments.output, arguments.input, compression, arguments.overwrite);
+  }
   fast_edi::BagDeblurReport report;
   {
     fast_edi::ProgressBar bar("deblurring");
     fast_edi::BagDeblurrer deblurrer(
-        reader, writer, arguments.topics, parameters,
+        reader, writer ? &*writer : nullptr, arguments.topics, parameters,
         [&bar](std::uint64_t done, std::uint64_t total) { bar.update(done, total); });
+    if (film) {
+      deblurrer.setOutputHandler([&film](const fast_edi::BagPipeline::Output& output) {
+        film->addFrame(*output.image);
+        for (const sensor_msgs::ImagePtr& latent : output.latent) {
+          film->addLatent(*latent);
+        }
+      });
+    }
     report = deblurrer.run();
   }
-  writer.close();
+  if (writer) {
+    writer->close();
+  }
+  if (film) {
+    film->close();
+  }
   printSummary(std::cout, report);
-  std::cout << "written: " << arguments.output << "\n" << std::flush;
+  if (writer) {
+    std::cout << "written: " << arguments.output << "\n";
+  }
+  if (film) {
+    printFilm(film->report(), arguments.video);
+  }
+  std::cout << std::flush;
   printDamage(reader, report, arguments.input);
   if (report.malformed_messages > 0) {
     std::cerr << "warning: " << report.malformed_messages

@@ -76,7 +76,8 @@ TEST(ParametersFromYaml, ReadsEveryKeyInItsUnit) {
       "weighting: counter\nreference: start\nstamp_reference: end\nexposure_source: parameter\n"
       "exposure_time_us: 12345\ntime_offset_us: -1.5\nclose_timeout_ms: 50.5\n"
       "max_buffered_events: 1e6\nmax_backward_jump_ms: 20\nmax_forward_jump_ms: 3000\n"
-      "response_offset_dn: 4.5\nframe_id: davis\npassthrough: true\nlazy: false\n");
+      "latent_images: 8\nresponse_offset_dn: 4.5\nframe_id: davis\npassthrough: true\nlazy: "
+      "false\n");
   EXPECT_EQ(loaded.deblur.thresholds, (ContrastThresholds{0.3, 0.2}));
   EXPECT_EQ(loaded.deblur.weighting, Weighting::kCounter);
   EXPECT_EQ(loaded.deblur.reference, ExposureInstant::kStart);
@@ -88,6 +89,7 @@ TEST(ParametersFromYaml, ReadsEveryKeyInItsUnit) {
   EXPECT_EQ(loaded.deblur.max_buffered_events, 1'000'000u);
   EXPECT_EQ(loaded.deblur.max_backward_jump_ns, 20'000'000);
   EXPECT_EQ(loaded.deblur.max_forward_jump_ns, 3'000'000'000);
+  EXPECT_EQ(loaded.deblur.latent.per_exposure, 8);
   EXPECT_EQ(loaded.deblur.response.offsetDn(), 4.5);
   EXPECT_EQ(loaded.ros.frame_id, "davis");
   EXPECT_TRUE(loaded.deblur.passthrough);
@@ -187,7 +189,7 @@ TEST(ParametersFromYaml, UnknownKeysNameTheNearestKnownOne) {
 }
 
 TEST(ParametersFromYaml, KeysOfStepsThatDoNotExistAreUnknown) {
-  for (const char* key : {"refine_contrast", "latent_images"}) {
+  for (const char* key : {"latent_video", "temporal_filter"}) {
     EXPECT_THAT(messageFor(kThresholds + key + ": 1"), HasSubstr(std::string(key) + ": unknown"));
   }
 }
@@ -340,6 +342,7 @@ TEST(ParameterTable, DefaultsAreAcceptedAndChangeNothing) {
   EXPECT_EQ(loaded.deblur.max_forward_jump_ns, defaults.max_forward_jump_ns);
   EXPECT_EQ(loaded.deblur.passthrough, defaults.passthrough);
   EXPECT_EQ(loaded.ros.lazy, RosParameters{}.lazy);
+  EXPECT_FALSE(loaded.deblur.latent.isOn());
 }
 
 TEST(ParameterTable, IsAMarkdownTable) {

@@ -86,6 +86,30 @@ TEST_F(MessageFrameSinkTest, PassesUnsupportedImagesOnAsTheyCame) {
   EXPECT_EQ(message->header.stamp, ros::Time(100, 1)) << "the input was written to";
 }
 
+TEST_F(MessageFrameSinkTest, DeliversLatentImagesToWhoeverWantsThem) {
+  EXPECT_FALSE(sink_.wantsLatentImages());
+  bool wanted = false;
+  std::vector<sensor_msgs::ImagePtr> latent;
+  sink_.setLatent([&wanted] { return wanted; },
+                  [&latent](const sensor_msgs::ImagePtr& image) { latent.push_back(image); });
+  EXPECT_FALSE(sink_.wantsLatentImages());
+  wanted = true;
+  EXPECT_TRUE(sink_.wantsLatentImages());
+  const sensor_msgs::ImagePtr message = makeImage("mono8", "");
+  const InputFrame frame = makeInputFrame(message, readImage(*message), 0);
+  for (std::uint8_t i = 0; i < 2; ++i) {
+    sink_.beginLatent(frame).row(0)[1] = static_cast<std::uint8_t>(200 + i);
+    sink_.finishLatent(frame, 100'000'000'020 + i);
+  }
+  EXPECT_TRUE(deliveries_.empty());
+  ASSERT_EQ(latent.size(), 2u);
+  EXPECT_EQ(latent[0]->data[1], 200);
+  EXPECT_EQ(latent[1]->data[1], 201);
+  EXPECT_EQ(latent[1]->header.stamp, ros::Time(100, 21));
+  EXPECT_EQ(latent[1]->header.frame_id, "fallback");
+  EXPECT_EQ(latent[1]->encoding, "mono8");
+}
+
 TEST_F(MessageFrameSinkTest, UsesTheLatestCameraInfo) {
   const sensor_msgs::ImagePtr message = makeImage("mono8", "camera");
   const InputFrame frame = makeInputFrame(message, readImage(*message), 0);

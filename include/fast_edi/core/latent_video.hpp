@@ -39,6 +39,7 @@ class LatentVideo {
   /// \param output with input and exposure (in frame time)
   /// \param epoch of the frames' clock
   /// \param reference_ns of the gains, in event time
+  /// \param parameters with the thresholds and the time offset of that integral
   void take(const OutputFrame& output, std::uint64_t epoch, const std::vector<float>& gain,
             std::int64_t reference_ns, const DeblurParameters& parameters);
 
@@ -57,6 +58,7 @@ class LatentVideo {
   struct Source {
     InputFrame input;
     ExposureInterval exposure;     ///< in frame time
+    std::int64_t offset_ns = 0;    ///< event time minus frame time
     std::uint64_t epoch = 0;       ///< of the frames' clock
     std::uint64_t generation = 0;  ///< of the event lists
     LatentGains gains;

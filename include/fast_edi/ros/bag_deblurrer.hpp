@@ -7,6 +7,7 @@
 #include <functional>
 #include <iosfwd>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <ros/time.h>
@@ -24,7 +25,7 @@ namespace fast_edi {
 struct BagDeblurReport {
   DeblurCounters counters;
   std::uint64_t messages = 0;            ///< copied
-  std::uint64_t outputs = 0;             ///< images written
+  std::uint64_t outputs = 0;             ///< frames put out
   std::uint64_t malformed_messages = 0;  ///< on a topic of ours, but unreadable: copied, not used
   double seconds = 0.0;                  ///< wall clock
   ros::Time last_record_time;            ///< of the last readable message
@@ -43,15 +44,21 @@ class BagDeblurrer {
  public:
   /// \param done, total messages
   using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
+  using OutputHandler = std::function<void(const BagPipeline::Output& output)>;
 
   /// \param reader, writer must outlive this object
+  /// \param writer null: no bag is written
   /// \throws std::invalid_argument for parameters out of range
-  BagDeblurrer(BagReader& reader, BagWriter& writer, const TopicNames& topics,
+  BagDeblurrer(BagReader& reader, BagWriter* writer, const TopicNames& topics,
                const LoadedParameters& parameters, Progress progress);
+
+  /// Shows every output to \p handler as well, which may throw: run() then ends with that.
+  void setOutputHandler(OutputHandler handler) { output_handler_ = std::move(handler); }
 
   /// Copies every message and adds the deblurred frames, each behind the message that completed it
   /// and with the same record time. At the end of the bag waiting frames are closed with what has
-  /// come. Does not close the writer.
+  /// come. Latent images that `latent_images` asks for are written as <image ns>/latent/image_raw.
+  /// Does not close the writer.
   /// \throws BagError when the output cannot be written
   BagDeblurReport run();
 
@@ -59,10 +66,13 @@ class BagDeblurrer {
   void writeOutputs(const ros::Time& record_time);
 
   BagReader& reader_;
-  BagWriter& writer_;
+  BagWriter* const writer_;
   const std::string image_topic_;
   const std::string camera_info_topic_;
+  const std::string latent_topic_;
+  const bool write_latent_;
   const Progress progress_;
+  OutputHandler output_handler_;
   BagPipeline pipeline_;
   BagDeblurReport report_;
 };

@@ -24,6 +24,7 @@ class BagPipeline {
     sensor_msgs::ImagePtr image;
     sensor_msgs::CameraInfoPtr info;
     OutputFrame frame;  ///< its input comes from messageFrame(), which has the record time too
+    std::vector<sensor_msgs::ImagePtr> latent;  ///< images of the high-rate video behind it
   };
 
   /// \throws std::invalid_argument for parameters out of range

@@ -103,6 +103,7 @@ class DeblurNode {
 
   image_transport::CameraPublisher deblurred_publisher_;
   image_transport::Publisher comparison_publisher_;
+  image_transport::Publisher latent_publisher_;  ///< empty when `latent_images` is 0
   std::optional<diagnostic_updater::Updater> updater_;
   ros::SteadyTimer advance_timer_;
   ros::SteadyTimer report_timer_;

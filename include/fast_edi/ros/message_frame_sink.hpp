@@ -38,19 +38,33 @@ class MessageFrameSink : public FrameSink {
       std::function<void(const sensor_msgs::ImagePtr& image, const sensor_msgs::CameraInfoPtr& info,
                          const OutputFrame& output)>;
 
+  /// \param image is complete and nobody else's
+  using DeliverLatent = std::function<void(const sensor_msgs::ImagePtr& image)>;
+
   /// \param frame_id used for images that have none
   MessageFrameSink(std::string frame_id, Deliver deliver);
+
+  /// Who wants the high-rate video, if anybody.
+  /// \param wanted asked for each frame
+  void setLatent(std::function<bool()> wanted, DeliverLatent deliver);
 
   /// The calibration for all later frames.
   void setCameraInfo(const sensor_msgs::CameraInfoConstPtr& info) { camera_info_ = info; }
 
   MutableImageView begin(const InputFrame& input) override;
   void finish(const OutputFrame& output) override;
+  bool wantsLatentImages() const override { return latent_wanted_ && latent_wanted_(); }
+  MutableImageView beginLatent(const InputFrame& input) override { return begin(input); }
+  void finishLatent(const InputFrame& input, std::int64_t stamp_ns) override;
 
  private:
+  sensor_msgs::ImagePtr takeImage(std::int64_t stamp_ns);
+
   std::string frame_id_;
   Deliver deliver_;
   sensor_msgs::CameraInfoConstPtr camera_info_;
+  std::function<bool()> latent_wanted_;
+  DeliverLatent deliver_latent_;
   sensor_msgs::ImagePtr image_;  ///< between begin() and finish()
 };
 

@@ -19,6 +19,8 @@ struct TopicNames {
   std::string cameraInfo() const;
   std::string outputImage() const;
   std::string outputCameraInfo() const;
+  /// The high-rate video: `latent` beside `image`, or below `output`.
+  std::string outputLatent() const;
 };
 
 /// The namespace of \p topic: "/dvs" for "/dvs/image_raw", "" for "/image_raw".
