@@ -160,6 +160,13 @@ std::vector<ConfigKey> filterKeys() {
               [](bool value, ParameterDraft& draft) {
                 draft.loaded.deblur.filter.frame_noise = value;
               }),
+      boolKey(
+          {"refine_contrast", "", boolText(DeblurParameters{}.refine_contrast),
+           "learn the contrast thresholds from consecutive frames, within 30 % of those given"},
+          [](bool value, ParameterDraft& draft) { draft.loaded.deblur.refine_contrast = value; }),
+      boolKey({"refine_delay", "", boolText(DeblurParameters{}.refine_delay),
+               "learn the delay of the events behind the frames, up to 5 ms"},
+              [](bool value, ParameterDraft& draft) { draft.loaded.deblur.refine_delay = value; }),
       numberKey({"frame_noise_dn", "8-bit DN", numberText(defaults.frame_noise_dn),
                  "standard deviation of a frame's noise"},
                 kFrameNoiseDn,
@@ -197,6 +204,7 @@ std::vector<ConfigKey> buildTopLevelKeys() {
               &DeblurParameters::max_forward_jump_ns,
               "an event ahead of the newest by more than this is a jump of the clock, once the "
               "next array confirms it"),
+      latentImagesKey(),
       textKey({"response_file", "", "none",
                "camera response: 256 natural-log irradiances, one for each 8-bit DN; a relative "
                "path starts at the configuration file"},
@@ -204,7 +212,6 @@ std::vector<ConfigKey> buildTopLevelKeys() {
       numberKey(
           {"response_offset_dn", "DN", "0", "offset d of the linear response, exposure = DN + d"},
           kOffsetDn, [](double value, ParameterDraft& draft) { draft.response_offset_dn = value; }),
-      latentImagesKey(),
       textKey({"frame_id", "", "\"\"", "replaces an empty frame_id of the input images"},
               [](const std::string& value, ParameterDraft& draft) {
                 draft.loaded.ros.frame_id = value;

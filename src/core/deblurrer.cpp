@@ -14,6 +14,7 @@
 #include "fast_edi/core/exposure_window.hpp"
 #include "fast_edi/core/latent_image.hpp"
 #include "fast_edi/core/latent_video.hpp"
+#include "fast_edi/core/online_calibration.hpp"
 #include "fast_edi/core/window_predictor.hpp"
 
 namespace fast_edi {
@@ -70,7 +71,8 @@ struct Expectation {
 class Deblurrer::Impl {
  public:
   Impl(const DeblurParameters& parameters, FrameSink& sink)
-      : parameters_(parameters),
+      : requested_(parameters),
+        parameters_(parameters),
         sink_(sink),
         pairing_(parameters.close_timeout_ns, counters_),
         events_(limitsOf(parameters), counters_,
@@ -87,7 +89,7 @@ class Deblurrer::Impl {
   void pause();
   void setParameters(const DeblurParameters& parameters);
 
-  const DeblurParameters& parameters() const { return parameters_; }
+  const DeblurParameters& parameters() const { return requested_; }
   const DeblurCounters& counters() const { return counters_; }
   DeblurStatus status() const;
 
@@ -113,7 +115,15 @@ class Deblurrer::Impl {
   void expectNext();
   void follow();
 
-  DeblurParameters parameters_;
+  // Calibration
+  bool calibrates() const;
+  void calibrate(const OutputFrame& output, const ExposureInterval& window,
+                 std::int64_t reference_ns);
+  void resetCalibration();
+  void applyCalibration(const Calibration& calibration);
+
+  DeblurParameters requested_;   ///< by the user
+  DeblurParameters parameters_;  ///< the same with the calibration in force
   FrameSink& sink_;
   DeblurCounters counters_;
   ExposurePairing pairing_;
@@ -136,6 +146,8 @@ class Deblurrer::Impl {
   SensorSize integral_size_;
   std::uint64_t integral_generation_ = 0;
   std::vector<float> gain_;
+  std::optional<OnlineCalibration> calibration_;  ///< of the integral's size
+  std::vector<float> unfiltered_gain_;            ///< for it
   LatentImage latent_image_;
   LatentVideo video_;
   std::optional<Expectation> expectation_;
@@ -221,7 +233,9 @@ void Deblurrer::Impl::pause() {
 void Deblurrer::Impl::setParameters(const DeblurParameters& parameters) {
   validate(parameters);
   const bool source_changes = parameters.exposure_source != parameters_.exposure_source;
+  requested_ = parameters;
   parameters_ = parameters;
+  calibration_.reset();
   events_.setLimits(limitsOf(parameters_));
   pairing_.setTimeout(parameters_.close_timeout_ns);
   if (source_changes) {
@@ -249,7 +263,8 @@ DeblurStatus Deblurrer::Impl::status() const {
   status.events_seen = events_.seen();
   status.sensor_size = frame_size_;
   status.buffer_bytes = events_.memoryBytes() + gain_.capacity() * sizeof(float) +
-                        video_.memoryBytes() + (integral_ ? integral_->memoryBytes() : 0);
+                        video_.memoryBytes() + (integral_ ? integral_->memoryBytes() : 0) +
+                        (calibration_ ? calibration_->memoryBytes() : 0);
   if (events_.lists() != nullptr) {
     status.buffered_events = events_.lists()->eventCount();
     status.sensor_size = events_.lists()->size();
@@ -258,6 +273,8 @@ DeblurStatus Deblurrer::Impl::status() const {
   status.last_exposure_ns = by_topic && pairing_.last() ? *pairing_.last()  //
                                                         : parameters_.exposure_time_ns;
   status.exposure_known = status.last_exposure_ns > 0;
+  status.thresholds = parameters_.thresholds;
+  status.event_delay_ns = parameters_.time_offset_ns - requested_.time_offset_ns;
   return status;
 }
 
@@ -386,7 +403,9 @@ void Deblurrer::Impl::closeFront(const FrameVerdict& verdict) {
     }
     // A stamp far ahead of all events is no reason to throw them away.
     if (events_.isPast(window.start_ns)) {
-      events_.discardBefore(window.start_ns);
+      const bool pair_open = calibration_.has_value();
+      events_.discardBefore(pair_open ? std::min(window.start_ns, calibration_->neededFrom())
+                                      : window.start_ns);
     }
   }
   expectNext();
@@ -405,6 +424,10 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
   } else {
     video_.breakOff();
   }
+  const bool calibrates = this->calibrates();
+  if (calibrates) {
+    unfiltered_gain_ = gain_;
+  }
   const MutableImageView out = sink_.begin(output.input);
   latent_image_.write(output.input.image, gain_.data(), parameters_.response, out);
 
@@ -419,10 +442,18 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
   if (wants_video) {  // behind the frame itself, which somebody waits for
     counters_.latent_images += video_.write(events_, parameters_);
   }
+  if (calibrates) {
+    calibrate(output, window, reference_ns);
+  } else if (calibration_) {
+    calibration_->skipFrame();
+  }
 }
 
 void Deblurrer::Impl::passThrough(OutputFrame& output, PassReason reason) {
   video_.breakOff();
+  if (calibration_) {
+    calibration_->interrupt();
+  }
   copyImage(output.input.image, sink_.begin(output.input));
   ++counters_.frames_passed[static_cast<std::size_t>(reason)];
   output.pass_reason = reason;
@@ -445,11 +476,13 @@ bool Deblurrer::Impl::prepareIntegral(bool may_allocate) {
                                                  parameters_.weighting);
     gain_.resize(integral_size_.pixelCount());
     expectation_.reset();
+    resetCalibration();
   }
   if (integral_generation_ != events_.generation()) {
     integral_->forget();
     integral_generation_ = events_.generation();
     expectation_.reset();
+    resetCalibration();
   }
   return true;
 }
@@ -482,6 +515,48 @@ void Deblurrer::Impl::expectNext() {
 void Deblurrer::Impl::follow() {
   if (!parameters_.passthrough && events_.lists() != nullptr && prepareIntegral(false)) {
     integral_->follow(*events_.lists());
+  }
+}
+
+// --- Calibration ---------------------------------------------------------------------------------
+
+/// True when the frame that is about to be closed is needed for it.
+bool Deblurrer::Impl::calibrates() const {
+  return parameters_.filter.enabled && (parameters_.refine_contrast || parameters_.refine_delay) &&
+         (!calibration_ || calibration_->wantsNextFrame());
+}
+
+/// Learns from the frame that was just published and the one before it.
+void Deblurrer::Impl::calibrate(const OutputFrame& output, const ExposureInterval& window,
+                                std::int64_t reference_ns) {
+  if (!calibration_) {
+    const OnlineCalibration::Settings settings{parameters_.refine_contrast,
+                                               parameters_.refine_delay};
+    calibration_.emplace(integral_size_, requested_.thresholds, settings);
+  }
+  if (!events_.covers({std::min(window.start_ns, calibration_->neededFrom()), window.end_ns})) {
+    calibration_->interrupt();
+  }
+  const CalibrationOutcome outcome =
+      calibration_->addFrame({window, reference_ns, output.input.image, unfiltered_gain_.data()},
+                             parameters_.response, *events_.lists());
+  counters_.calibration_fits += outcome == CalibrationOutcome::kFitted ? 1 : 0;
+  counters_.calibration_holes += outcome == CalibrationOutcome::kNoEventsBetween ? 1 : 0;
+  applyCalibration(calibration_->inForce());
+}
+
+/// After the events were lost, what follows must be that of a fresh start.
+void Deblurrer::Impl::resetCalibration() {
+  calibration_.reset();
+  applyCalibration({requested_.thresholds, 0});
+}
+
+void Deblurrer::Impl::applyCalibration(const Calibration& calibration) {
+  parameters_.time_offset_ns = requested_.time_offset_ns + calibration.event_delay_ns;
+  if (parameters_.thresholds != calibration.thresholds) {
+    parameters_.thresholds = calibration.thresholds;
+    integral_->setThresholds(parameters_.thresholds);
+    expectation_.reset();
   }
 }
 

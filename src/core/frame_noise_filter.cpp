@@ -7,7 +7,7 @@ namespace {
 
 /// Differences up to about this many standard deviations are taken for noise. Chosen by PSNR on
 /// simulated sequences; 3 to 5 differ by less than 0.1 dB.
-constexpr float kRangeInNoise = 4.0F;
+constexpr float kRangeInNoise = 3.0F;
 /// 16-bit DN for one 8-bit DN: 65535 / 255.
 constexpr float kDn16PerDn8 = 257.0F;
 /// Truncation rounds to nearest after this is added to a number that is not negative. A weighted

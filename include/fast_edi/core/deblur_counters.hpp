@@ -41,6 +41,8 @@ struct DeblurCounters {
   std::uint64_t frames_timed_out = 0;  ///< closed by close_timeout with what had come
   std::array<std::uint64_t, kPassReasonCount> frames_passed{};
   std::uint64_t frames_suppressed = 0;  ///< output stamp not later than the last one: no output
+  std::uint64_t calibration_fits = 0;   ///< pairs of frames that the calibration learned from
+  std::uint64_t calibration_holes = 0;  ///< pairs without events between their exposures
   std::uint64_t latent_images = 0;      ///< of the high-rate video
   std::uint64_t exposures_in = 0;
   std::uint64_t exposures_refused = 0;  ///< <= 0 or > 1 s

@@ -39,6 +39,8 @@ struct DeblurStatus {
   bool exposure_known = false;
   SensorSize sensor_size;  ///< zero until the first event array or frame
   std::int64_t last_exposure_ns = 0;
+  ContrastThresholds thresholds;    ///< in force: as given, or as learned
+  std::int64_t event_delay_ns = 0;  ///< as learned
 };
 
 class Deblurrer {

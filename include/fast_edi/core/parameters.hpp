@@ -33,7 +33,9 @@ struct DeblurParameters {
   CameraResponse response = CameraResponse::linear();
   LatentSampling latent;  ///< of the high-rate video
   FilterParameters filter;
-  bool passthrough = false;  ///< publish every frame unchanged
+  bool refine_contrast = true;  ///< learn the thresholds from the recording; needs filter.enabled
+  bool refine_delay = true;     ///< learn the delay of events behind frames; needs filter.enabled
+  bool passthrough = false;     ///< publish every frame unchanged
 };
 
 constexpr std::int64_t kMaxExposure_ns = kNanosecondsPerSecond;

@@ -1,0 +1,137 @@
+/// \file
+/// What bias settings and stamps leave open, learned from the recording itself: the contrast
+/// thresholds (biases give them to some 10 %) and the delay of the events behind the frames (the
+/// photoreceptor's bandwidth, 0.5 ms in bright and 5 ms in dim light, and offsets of the clocks).
+///
+/// Two consecutive frames and the events of both exposures and in between say the same thing twice.
+/// With B the blurry frames, E their double integrals and l the change of level by the events
+/// between the two reference times,
+///
+///     r = log(B2 / E2) - log(B1 / E1) - l
+///
+/// is zero if the model is right. If not, to first order,
+///
+///     r = dc_on x_on - dc_off x_off + dt x_t,
+///     x_p = sum over events of polarity p of w(t),   x_t = n_2 / T_2 - n_1 / T_1,
+///
+/// w rising from 0 to 1 during the first exposure, 1 between them, and falling back to 0 during the
+/// second: what the mean levels of the exposures differ by, counted in events; n_i the change of
+/// level by the events during exposure i of length T_i. Both B and x are means over exposures, so
+/// neither blur nor the quantisation at one instant biases the fit, as it would for a fit of
+/// log L2 - log L1 to counts of events.
+///
+/// Fit: least squares over pixels that tell something (|x_on - x_off| >= 3, hardly any events back
+/// and forth, no grey level near black or saturation), robust (Cauchy weights), with a ridge
+/// towards the nominal values, exponential forgetting, and limits: thresholds within 30 % of
+/// nominal, the delay within 5 ms.
+///
+/// Each pair is used until kEagerFits have told something, then one of kRestFrames.
+///
+/// Recordings without events between exposures exist (a driver dropped them); there the fit would
+/// be wrong and is not made.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "fast_edi/core/camera_response.hpp"
+#include "fast_edi/core/contrast_threshold.hpp"
+#include "fast_edi/core/image.hpp"
+#include "fast_edi/core/pixel_event_lists.hpp"
+#include "fast_edi/core/types.hpp"
+
+namespace fast_edi {
+
+/// What is learned.
+struct Calibration {
+  ContrastThresholds thresholds;
+  std::int64_t event_delay_ns = 0;  ///< events come this much after the light that they report
+};
+
+/// What became of a frame.
+enum class CalibrationOutcome {
+  kNoPair,           ///< nothing to compare with
+  kNoEventsBetween,  ///< the stream holds no events between the exposures
+  kTooFewPixels,     ///< nothing moved enough
+  kFitted,
+};
+
+class OnlineCalibration {
+ public:
+  static constexpr int kEagerFits = 20;
+  static constexpr int kRestFrames = 10;
+
+  struct Settings {
+    bool contrast = true;  ///< learn the thresholds
+    bool delay = true;     ///< learn the delay
+  };
+
+  /// A deblurred frame. Times are event times: shifted by time offset and delay already.
+  struct Frame {
+    ExposureInterval window;
+    std::int64_t reference_ns = 0;
+    ImageView image;              ///< the blurry one
+    const float* gain = nullptr;  ///< of DoubleIntegral::close(), not filtered
+  };
+
+  OnlineCalibration(SensorSize size, ContrastThresholds nominal, Settings settings);
+
+  /// True when the next frame is needed. Each pair is used at first; once enough has been learned,
+  /// one of several, which follows slow changes at a fraction of the cost.
+  bool wantsNextFrame() const { return resting_ == 0; }
+  /// Instead of addFrame() for a frame that is not needed.
+  void skipFrame();
+  /// Compares a frame with the one before it, and takes over what follows from that if it differs
+  /// noticeably from what is in force.
+  /// \pre \p lists hold all events from neededFrom() to the end of the frame's window
+  CalibrationOutcome addFrame(const Frame& frame, const CameraResponse& response,
+                              const PixelEventLists& lists);
+  /// Forgets the frame before (after a gap), but not what was learned.
+  void interrupt() { have_previous_ = false; }
+
+  /// Start of the earliest event that the next addFrame() needs; INT64_MAX while it needs none.
+  std::int64_t neededFrom() const;
+  /// To be used for the next frame.
+  const Calibration& inForce() const { return in_force_; }
+  const ContrastThresholds& nominal() const { return nominal_; }
+  std::size_t memoryBytes() const;
+
+ private:
+  /// What the events of a pair of frames say about one pixel.
+  struct PixelEvidence {
+    float on;     ///< x_on
+    float off;    ///< x_off
+    float slope;  ///< x_t [1/ms]
+    float level;  ///< l
+    float count;  ///< events
+  };
+  /// Weighted X'X and X'(r + X theta), theta = (c_on, c_off, delay in ms).
+  struct NormalEquations {
+    Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+  };
+
+  void loadLogLatent(const Frame& frame, const CameraResponse& response);
+  void gather(const Frame& frame, const PixelEventLists& lists);
+  std::size_t fit(NormalEquations& equations) const;
+  void takeOver();
+
+  SensorSize size_;
+  ContrastThresholds nominal_;
+  Settings settings_;
+  Calibration in_force_;
+  NormalEquations learned_;
+  int fits_ = 0;
+  int resting_ = 0;  ///< frames until the next one is needed
+
+  bool have_previous_ = false;
+  ExposureInterval previous_window_;
+  std::int64_t previous_reference_ns_ = 0;
+  std::vector<float> log_latent_;  ///< log B + log gain; NaN where B is no evidence
+  std::vector<float> previous_log_latent_;
+  std::vector<PixelEvidence> evidence_;
+};
+
+}  // namespace fast_edi

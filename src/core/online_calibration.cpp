@@ -1,0 +1,270 @@
+#include "fast_edi/core/online_calibration.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+#include "fast_log.hpp"
+
+namespace fast_edi {
+namespace {
+
+/// Grey levels outside are too dark or too near saturation to say anything [8-bit DN].
+constexpr int kLowestEvidence_dn = 16;
+constexpr int kHighestEvidence_dn = 239;
+constexpr std::size_t kLevels = 256;
+/// 16-bit DN for one 8-bit DN: 65535 / 255.
+constexpr int kDn16PerDn8 = 257;
+
+/// Changes below this many events drown in the quantisation of events.
+constexpr float kLeastChange = 3.0F;
+/// More events than this for each event of change: texture that came and went, or noise.
+constexpr float kMostEventsPerChange = 1.3F;
+constexpr float kSpareEvents = 2.0F;
+/// Residuals above this count less and less (scale of the Cauchy weights) [natural log].
+constexpr double kResidualScale = 0.5;
+/// Each event adds this much to the variance of a pixel's residual, relative to that of the frames.
+constexpr double kVariancePerEvent = 0.1;
+constexpr std::size_t kLeastPixels = 50;
+
+/// Weight of the nominal values, as if that many pixels had told them by one event each ...
+constexpr double kContrastRidge = 100.0;
+/// ... or, for the delay, by one natural-log unit per millisecond each.
+constexpr double kDelayRidge = 0.1;
+/// What is not to be learned is tied to its nominal value.
+constexpr double kTied = 1e12;
+/// Weight of what was learned before, each time a pair is added.
+constexpr double kForgetting = 0.8;
+constexpr double kLargestCorrection = 0.3;  ///< of a threshold, relative to nominal
+constexpr double kLargestDelay_ms = 5.0;
+
+/// Smaller changes are not taken over, so that most pairs of frames were closed alike.
+constexpr double kNoticeableCorrection = 0.01;  ///< of a threshold, relative
+constexpr std::int64_t kNoticeableDelay_ns = 50 * kNanosecondsPerMicrosecond;
+
+/// Events between two exposures, relative to the rate within them: less than this is a hole.
+constexpr double kLeastRateBetween = 0.1;
+/// A shorter time between exposures says nothing about holes.
+constexpr std::int64_t kShortestPause_ns = kNanosecondsPerMillisecond;
+
+std::uint64_t eventsIn(const PixelEventLists& lists, const ExposureInterval& interval) {
+  return lists.lowerBound(interval.end_ns) - lists.lowerBound(interval.start_ns);
+}
+
+/// True when the time between two exposures holds (almost) no events although they do.
+bool isHole(const PixelEventLists& lists, const ExposureInterval& first,
+            const ExposureInterval& second) {
+  const ExposureInterval between{first.end_ns, second.start_ns};
+  if (between.length() < kShortestPause_ns) {
+    return false;
+  }
+  const auto inside = static_cast<double>(eventsIn(lists, first) + eventsIn(lists, second));
+  const double rate = inside / static_cast<double>(first.length() + second.length());
+  return static_cast<double>(eventsIn(lists, between)) <
+         kLeastRateBetween * rate * static_cast<double>(between.length());
+}
+
+/// 8-bit level of a pixel; of colours, the mean.
+std::size_t levelOf(const std::uint8_t* pixel, PixelFormat format) {
+  switch (format) {
+    case PixelFormat::kMono16: {
+      std::uint16_t level;
+      std::memcpy(&level, pixel, sizeof(level));
+      return static_cast<std::size_t>(level / kDn16PerDn8);
+    }
+    case PixelFormat::kColor8:
+      return static_cast<std::size_t>((pixel[0] + pixel[1] + pixel[2]) / 3);
+    case PixelFormat::kMono8:
+    case PixelFormat::kBayer8:
+      break;
+  }
+  return pixel[0];
+}
+
+double limited(double value, double lowest, double highest) {
+  return std::min(std::max(value, lowest), highest);
+}
+
+double limitedThreshold(double value, double nominal) {
+  return limited(value, (1.0 - kLargestCorrection) * nominal, (1.0 + kLargestCorrection) * nominal);
+}
+
+}  // namespace
+
+OnlineCalibration::OnlineCalibration(SensorSize size, ContrastThresholds nominal, Settings settings)
+    : size_(size),
+      nominal_(nominal),
+      settings_(settings),
+      in_force_{nominal, 0},
+      log_latent_(size.pixelCount()),
+      previous_log_latent_(size.pixelCount()),
+      evidence_(size.pixelCount()) {}
+
+std::size_t OnlineCalibration::memoryBytes() const {
+  return (log_latent_.capacity() + previous_log_latent_.capacity()) * sizeof(float) +
+         evidence_.capacity() * sizeof(PixelEvidence);
+}
+
+std::int64_t OnlineCalibration::neededFrom() const {
+  return have_previous_ ? previous_window_.start_ns : std::numeric_limits<std::int64_t>::max();
+}
+
+CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraResponse& response,
+                                               const PixelEventLists& lists) {
+  loadLogLatent(frame, response);
+  const Calibration before = in_force_;
+  CalibrationOutcome outcome = CalibrationOutcome::kNoPair;
+  if (have_previous_ && frame.window.start_ns >= previous_window_.end_ns) {
+    if (isHole(lists, previous_window_, frame.window)) {
+      outcome = CalibrationOutcome::kNoEventsBetween;
+    } else {
+      gather(frame, lists);
+      NormalEquations pair;
+      outcome = CalibrationOutcome::kTooFewPixels;
+      if (fit(pair) >= kLeastPixels) {
+        learned_.matrix = kForgetting * learned_.matrix + pair.matrix;
+        learned_.vector = kForgetting * learned_.vector + pair.vector;
+        takeOver();
+        ++fits_;
+        outcome = CalibrationOutcome::kFitted;
+      }
+    }
+  }
+  previous_log_latent_.swap(log_latent_);
+  previous_window_ = frame.window;
+  previous_reference_ns_ = frame.reference_ns;
+  // The next frame will be closed otherwise than this one: no pair.
+  have_previous_ = in_force_.thresholds == before.thresholds &&
+                   in_force_.event_delay_ns == before.event_delay_ns;
+  if (outcome == CalibrationOutcome::kFitted && fits_ >= kEagerFits) {
+    resting_ = kRestFrames;
+    have_previous_ = false;
+  }
+  return outcome;
+}
+
+void OnlineCalibration::skipFrame() {
+  have_previous_ = false;
+  resting_ = std::max(0, resting_ - 1);
+}
+
+void OnlineCalibration::loadLogLatent(const Frame& frame, const CameraResponse& response) {
+  std::array<float, kLevels> log_exposure{};
+  log_exposure.fill(std::numeric_limits<float>::quiet_NaN());
+  for (int dn = kLowestEvidence_dn; dn <= kHighestEvidence_dn; ++dn) {
+    log_exposure[static_cast<std::size_t>(dn)] =
+        static_cast<float>(std::log(response.exposure(static_cast<double>(dn))));
+  }
+  const int bytes = bytesPerPixel(frame.image.format);
+  std::size_t i = 0;
+  for (int y = 0; y < size_.height; ++y) {
+    const std::uint8_t* pixel = frame.image.row(y);
+    for (int x = 0; x < size_.width; ++x, ++i, pixel += bytes) {
+      log_latent_[i] = log_exposure[levelOf(pixel, frame.image.format)] + fastLog(frame.gain[i]);
+    }
+  }
+}
+
+/// Sums up what every event of the pair says about its pixel.
+void OnlineCalibration::gather(const Frame& frame, const PixelEventLists& lists) {
+  std::fill(evidence_.begin(), evidence_.end(), PixelEvidence{0.0F, 0.0F, 0.0F, 0.0F, 0.0F});
+  const ExposureInterval& first = previous_window_;
+  const ExposureInterval& second = frame.window;
+  constexpr auto kNsPerMs = static_cast<float>(kNanosecondsPerMillisecond);
+  const float per_first_ns = 1.0F / static_cast<float>(first.length());
+  const float per_second_ns = 1.0F / static_cast<float>(second.length());
+  const float step[2] = {static_cast<float>(in_force_.thresholds.step(false)),
+                         static_cast<float>(in_force_.thresholds.step(true))};
+  const std::uint64_t end = lists.lowerBound(second.end_ns);
+  for (std::uint64_t sequence = lists.lowerBound(first.start_ns); sequence < end;) {
+    const PackedEventSpan span = lists.span(sequence, end);
+    for (std::size_t i = 0; i < span.count; ++i) {
+      const std::int64_t t_ns = span.base_ns + static_cast<std::int64_t>(span.data[i].dt_ns);
+      const std::uint32_t on = span.data[i].code & 1u;
+      PixelEvidence& pixel = evidence_[span.data[i].code >> 1];
+      float weight = 1.0F;
+      if (t_ns < first.end_ns) {
+        weight = static_cast<float>(t_ns - first.start_ns) * per_first_ns;
+        pixel.slope -= step[on] * per_first_ns * kNsPerMs;
+      } else if (t_ns >= second.start_ns) {
+        weight = static_cast<float>(second.end_ns - t_ns) * per_second_ns;
+        pixel.slope += step[on] * per_second_ns * kNsPerMs;
+      }
+      (on != 0 ? pixel.on : pixel.off) += weight;
+      pixel.count += 1.0F;
+      if (t_ns >= previous_reference_ns_ && t_ns < frame.reference_ns) {
+        pixel.level += step[on];
+      }
+    }
+    sequence += span.count;
+  }
+}
+
+/// Adds up the equations of a pair; returns how many pixels told something.
+std::size_t OnlineCalibration::fit(NormalEquations& equations) const {
+  const Eigen::Vector3d theta(in_force_.thresholds.on, in_force_.thresholds.off,
+                              static_cast<double>(in_force_.event_delay_ns) /
+                                  static_cast<double>(kNanosecondsPerMillisecond));
+  std::size_t pixels = 0;
+  for (std::size_t i = 0; i < evidence_.size(); ++i) {
+    const PixelEvidence& pixel = evidence_[i];
+    const float change = std::fabs(pixel.on - pixel.off);
+    if (change < kLeastChange || pixel.count > kMostEventsPerChange * change + kSpareEvents) {
+      continue;
+    }
+    const auto residual =
+        static_cast<double>(log_latent_[i] - previous_log_latent_[i] - pixel.level);
+    if (std::isnan(residual)) {
+      continue;  // one of both grey levels is no evidence
+    }
+    const double scaled = residual / kResidualScale;
+    const double weight = 1.0 / ((1.0 + scaled * scaled) *
+                                 (1.0 + kVariancePerEvent * static_cast<double>(pixel.count)));
+    const Eigen::Vector3d x(static_cast<double>(pixel.on), -static_cast<double>(pixel.off),
+                            static_cast<double>(pixel.slope));
+    equations.matrix += weight * x * x.transpose();
+    equations.vector += weight * (residual + x.dot(theta)) * x;
+    ++pixels;
+  }
+  return pixels;
+}
+
+/// Solves what was learned so far for the calibration.
+void OnlineCalibration::takeOver() {
+  const double contrast_ridge = settings_.contrast ? kContrastRidge : kTied;
+  const double delay_ridge = settings_.delay ? kDelayRidge : kTied;
+  const Eigen::Vector3d ridge(contrast_ridge, contrast_ridge, delay_ridge);
+  const Eigen::Vector3d nominal(nominal_.on, nominal_.off, 0.0);
+  const Eigen::Matrix3d matrix = learned_.matrix + Eigen::Matrix3d(ridge.asDiagonal());
+  const Eigen::Vector3d theta =
+      matrix.ldlt().solve(learned_.vector + Eigen::Vector3d(ridge.cwiseProduct(nominal)));
+  if (!theta.allFinite()) {
+    return;
+  }
+
+  Calibration wanted{nominal_, 0};
+  if (settings_.contrast) {
+    wanted.thresholds = {limitedThreshold(theta[0], nominal_.on),
+                         limitedThreshold(theta[1], nominal_.off)};
+  }
+  if (settings_.delay) {
+    const double delay_ms = limited(theta[2], -kLargestDelay_ms, kLargestDelay_ms);
+    wanted.event_delay_ns =
+        static_cast<std::int64_t>(delay_ms * static_cast<double>(kNanosecondsPerMillisecond));
+  }
+  const auto differs = [](double a, double b) {
+    return std::abs(a - b) > kNoticeableCorrection * b;
+  };
+  if (differs(wanted.thresholds.on, in_force_.thresholds.on) ||
+      differs(wanted.thresholds.off, in_force_.thresholds.off) ||
+      std::abs(wanted.event_delay_ns - in_force_.event_delay_ns) > kNoticeableDelay_ns) {
+    in_force_ = wanted;
+  }
+}
+
+}  // namespace fast_edi
