@@ -6,6 +6,7 @@
 //   /fallback  as /quick, with exposure_time_us
 //   /unexposed as /quick
 //   /biased    thresholds from biases
+//   /filmed    as /patient, with latent_images 4
 
 #include <algorithm>
 #include <condition_variable>
@@ -414,6 +415,59 @@ TEST_F(Live, DrawsAComparisonForWhoeverSubscribes) {
   EXPECT_EQ(picture->encoding, "bgr8");
   EXPECT_EQ(picture->width, 3u * 64u);
   EXPECT_EQ(picture->height, 48u);
+}
+
+TEST_F(Live, FilmsWhatIsBetweenTheFramesForWhoeverSubscribes) {
+  client_ = std::make_unique<NodeClient>("/filmed", "/filmed/deblur");
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<sensor_msgs::ImageConstPtr> images;
+  ros::Subscriber subscriber = client_->nodeHandle().subscribe<sensor_msgs::Image>(
+      "latent/image_raw", 1000, [&](const sensor_msgs::ImageConstPtr& image) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        images.push_back(image);
+        changed.notify_all();
+      });
+  ASSERT_TRUE(waitUntil([this] {
+    return client_->allInputsConnected() && publisherSendsToUs("/filmed/latent/image_raw");
+  })) << "nobody but the film's viewer keeps the inputs subscribed";
+  RecordingSettings settings = laterSettings();
+  settings.frames = 3;
+  const Recording recording = makeRecording(settings);
+  client_->play(recording);
+
+  // Four in each exposure, and in each of the gaps, which are longer.
+  std::vector<std::int64_t> expected_ns;
+  constexpr std::int64_t kImages = 4;
+  const auto expect = [&expected_ns](std::int64_t start_ns, std::int64_t length_ns) {
+    for (std::int64_t i = 0; i < kImages; ++i) {
+      expected_ns.push_back(start_ns + length_ns * (2 * i + 1) / (2 * kImages));
+    }
+  };
+  const std::int64_t gap_ns = settings.frame_period_ns - settings.exposure_ns;
+  for (int frame = 0; frame < settings.frames; ++frame) {
+    const std::int64_t start_ns =
+        settings.start_ns + settings.first_exposure_ns + frame * settings.frame_period_ns;
+    if (frame > 0) {
+      expect(start_ns - gap_ns, gap_ns);
+    }
+    expect(start_ns, settings.exposure_ns);
+  }
+  {
+    std::unique_lock<std::mutex> lock(mutex);
+    ASSERT_TRUE(
+        changed.wait_for(lock, kDeadline, [&] { return images.size() >= expected_ns.size(); }));
+    ASSERT_EQ(images.size(), expected_ns.size());
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      EXPECT_EQ(static_cast<std::int64_t>(images[i]->header.stamp.toNSec()), expected_ns[i]) << i;
+      EXPECT_EQ(images[i]->header.frame_id, "camera");
+      EXPECT_EQ(images[i]->encoding, "mono8");
+      EXPECT_EQ(images[i]->width, 64u);
+    }
+  }
+  subscriber.shutdown();
+  EXPECT_TRUE(waitUntil([this] { return !client_->anyInputConnected(); }));
+  client_.reset();
 }
 
 TEST_F(Live, SendsAZeroCalibrationWhenItHasNone) {

@@ -1,0 +1,137 @@
+// The high-rate video of simulated recordings, whose truth is known at every instant.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "fast_edi/core/deblurrer.hpp"
+#include "fast_edi/evaluation/image_metrics.hpp"
+#include "fast_edi/simulation/davis_simulator.hpp"
+#include "support/event_generators.hpp"
+#include "support/pipeline_input.hpp"
+
+namespace fast_edi {
+namespace {
+
+constexpr SensorSize kSize{120, 90};
+/// Odd, so that one of them is the middle.
+constexpr std::size_t kImages = 11;
+constexpr double kAllowedLoss_db = 3.0;
+
+class SimulatedVideo : public ::testing::Test {
+ protected:
+  static SimulationSettings settings(const SensorSettings& sensor) {
+    SimulationSettings settings;
+    settings.sensor = sensor;
+    settings.sensor.size = kSize;
+    settings.scene.tags = 1;
+    settings.motion.kind = MotionKind::kShake;
+    settings.motion.focal_length_px = 110.0;
+    settings.timing.frames = 6;
+    settings.timing.exposure_us = 30'000;
+    settings.seed = 5;
+    return settings;
+  }
+
+  void film(const SimulationSettings& settings) {
+    simulator_ = std::make_unique<DavisSimulator>(settings);
+    sequence_ = simulateSequence(settings);
+    sink_.wants_latent_images = true;
+    DeblurParameters parameters;
+    parameters.thresholds = settings.sensor.thresholds;
+    parameters.exposure_source = ExposureSource::kParameter;
+    parameters.exposure_time_ns = settings.timing.exposure_us * kNanosecondsPerMicrosecond;
+    parameters.latent.per_exposure = kImages;
+    Deblurrer deblurrer(parameters, sink_);
+    deblurrer.addEvents(testing::wireView(testing::toWire(sequence_.events)), kSize, 1, 0);
+    for (const SimulatedFrame& frame : sequence_.frames) {
+      deblurrer.addFrame(testing::makeFrame(frame.exposure.at(ExposureInstant::kMid), kSize,
+                                            {frame.blurry.datastart, frame.blurry.dataend}),
+                         0);
+    }
+    deblurrer.finish();
+  }
+
+  double psnrAtItsInstant(const testing::RecordedLatent& image) const {
+    const cv::Mat shown(kSize.height, kSize.width, CV_8UC1,
+                        const_cast<std::uint8_t*>(image.pixels.data()));
+    return psnr(shown, simulator_->latentAt(image.stamp_ns));
+  }
+
+  /// The images within frame \p i's exposure.
+  std::vector<testing::RecordedLatent> within(std::size_t i) const {
+    const ExposureInterval& exposure = sequence_.frames[i].exposure;
+    std::vector<testing::RecordedLatent> images;
+    std::copy_if(sink_.latent_images.begin(), sink_.latent_images.end(), std::back_inserter(images),
+                 [&exposure](const testing::RecordedLatent& image) {
+                   return image.stamp_ns >= exposure.start_ns && image.stamp_ns < exposure.end_ns;
+                 });
+    return images;
+  }
+
+  std::unique_ptr<DavisSimulator> simulator_;
+  SimulatedSequence sequence_;
+  testing::RecordingSink sink_;
+};
+
+TEST_F(SimulatedVideo, IsNowhereMuchWorseThanInTheMiddleOfTheExposure) {
+  for (const SensorSettings& sensor : {SensorSettings{}, SensorSettings::ideal()}) {
+    sink_.latent_images.clear();
+    film(settings(sensor));
+    std::vector<double> mean(kImages, 0.0);
+    const auto frames = static_cast<double>(sequence_.frames.size());
+    for (std::size_t i = 0; i < sequence_.frames.size(); ++i) {
+      const auto images = within(i);
+      ASSERT_EQ(images.size(), kImages);
+      for (std::size_t k = 0; k < kImages; ++k) {
+        mean[k] += psnrAtItsInstant(images[k]) / frames;
+      }
+    }
+    const double middle = mean[kImages / 2];
+    for (std::size_t k = 0; k < kImages; ++k) {
+      EXPECT_GE(mean[k], middle - kAllowedLoss_db) << "instant " << k << " of " << kImages;
+    }
+  }
+}
+
+TEST_F(SimulatedVideo, BeatsTheBlurryFrameAtEveryInstant) {
+  film(settings(SensorSettings{}));
+  for (std::size_t i = 0; i < sequence_.frames.size(); ++i) {
+    for (const auto& image : within(i)) {
+      const double blurry = psnr(sequence_.frames[i].blurry, simulator_->latentAt(image.stamp_ns));
+      EXPECT_GT(psnrAtItsInstant(image), blurry + 3.0) << "frame " << i;
+    }
+  }
+}
+
+TEST_F(SimulatedVideo, BridgesGapsBetterThanHoldingTheFrame) {
+  film(settings(SensorSettings{}));
+  std::size_t bridged = 0;
+  for (const auto& image : sink_.latent_images) {
+    const auto holds = [&image](const SimulatedFrame& frame) {
+      return image.stamp_ns >= frame.exposure.start_ns && image.stamp_ns < frame.exposure.end_ns;
+    };
+    if (std::any_of(sequence_.frames.begin(), sequence_.frames.end(), holds)) {
+      continue;
+    }
+    ++bridged;
+    const cv::Mat truth = simulator_->latentAt(image.stamp_ns);
+    for (const auto& output : sink_.outputs) {
+      if (output.frame.input.stamp_ns == image.source_ns) {
+        const cv::Mat held(kSize.height, kSize.width, CV_8UC1,
+                           const_cast<std::uint8_t*>(output.pixels.data()));
+        EXPECT_GT(psnrAtItsInstant(image), psnr(held, truth) + 3.0);
+      }
+    }
+  }
+  // 10 ms of each 40 ms, as densely as within the exposures of 30 ms.
+  EXPECT_EQ(bridged, 5u * 4u);
+}
+
+}  // namespace
+}  // namespace fast_edi
