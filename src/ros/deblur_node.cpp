@@ -1,7 +1,6 @@
 #include "fast_edi/ros/deblur_node.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
 #include <stdexcept>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "fast_edi/ros/bias_update.hpp"
 #include "fast_edi/ros/message_conversion.hpp"
 #include "fast_edi/ros/parameter_loading.hpp"
+#include "fast_edi/ros/steady_time.hpp"
 
 namespace fast_edi {
 namespace {
@@ -29,12 +29,6 @@ constexpr int kLatentQueueFrames = 2;
 const ros::WallDuration kAdvancePeriod(0.004);
 const ros::WallDuration kReportPeriod(1.0);
 constexpr std::int64_t kWarningInterval_ns = 10 * kNanosecondsPerSecond;
-
-std::int64_t steadyNow() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 }  // namespace
 
@@ -132,8 +126,9 @@ std::unique_ptr<DeblurNode::Inputs> DeblurNode::subscribe() {
       nh_.subscribe("exposure", kExposureQueue, &DeblurNode::receiveExposure, this, no_delay);
   inputs->events = std::make_unique<EventSubscription>(
       nh_, "events", kEventQueue,
-      [this](const WireEvents& events, SensorSize size, std::uint32_t sequence) {
-        receiveEvents(events, size, sequence);
+      [this](const WireEvents& events, SensorSize size, std::uint32_t sequence,
+             std::int64_t decoding_since_ns) {
+        receiveEvents(events, size, sequence, decoding_since_ns);
       });
   inputs->image = image_transport::ImageTransport(nh_).subscribe(
       "image_raw", kImageQueue, &DeblurNode::receiveImage, this,
@@ -181,8 +176,11 @@ void DeblurNode::guarded(Work&& work) {
   }
 }
 
-void DeblurNode::receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence) {
+void DeblurNode::receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
+                               std::int64_t decoding_since_ns) {
   guarded([&] {
+    // What the array cost before this callback belongs to the latency of the frame it completes.
+    callback_start_ns_ = decoding_since_ns > 0 ? decoding_since_ns : callback_start_ns_;
     totals_.last_events_ns = callback_start_ns_;
     if (comparison_publisher_.getNumSubscribers() > 0) {
       comparison_.addEvents(events);  // first: these events may close the frame they belong to

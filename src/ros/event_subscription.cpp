@@ -6,6 +6,8 @@
 #include <ros/this_node.h>
 #include <ros/transport_hints.h>
 
+#include "fast_edi/ros/steady_time.hpp"
+
 #ifdef FAST_EDI_HAVE_DVS_MSGS
 #include <dvs_msgs/EventArray.h>
 
@@ -41,14 +43,14 @@ void EventSubscription::subscribeToWire() {
 
 void EventSubscription::receive(const ros::MessageEvent<const EventArray>& event) {
   const EventArray& array = *event.getConstMessage();
-  handler_(array.events(), sensorSize(array), array.header.seq);
+  handler_(array.events(), sensorSize(array), array.header.seq, array.decodingSince());
 #ifdef FAST_EDI_HAVE_DVS_MSGS
   if (event.getPublisherName() == ros::this_node::getName()) {
     const SensorSize size = sensorSize(array);
     const std::uint32_t beyond_a_hole = array.header.seq + 2;
     // The array, and with it this subscription's callback, must not be touched any more afterwards.
     subscribeToPointers();
-    handler_({}, size, beyond_a_hole);
+    handler_({}, size, beyond_a_hole, 0);
   }
 #endif
 }
@@ -58,8 +60,9 @@ void EventSubscription::subscribeToPointers() {
   takes_pointers_ = true;
   const boost::function<void(const dvs_msgs::EventArray::ConstPtr&)> callback =
       [this](const dvs_msgs::EventArray::ConstPtr& array) {
+        const std::int64_t since_ns = steadyNow();
         handler_(packGeneratedEvents(array->events, records_), sensorSize(*array),
-                 array->header.seq);
+                 array->header.seq, since_ns);
       };
   subscriber_ = nh_.subscribe<dvs_msgs::EventArray>(
       topic_, queue_size_, callback, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());

@@ -57,7 +57,7 @@ class EventPointers : public ::testing::Test {
   }
 
   EventSubscription::Handler handler() {
-    return [this](const WireEvents& events, SensorSize size, std::uint32_t sequence) {
+    return [this](const WireEvents& events, SensorSize size, std::uint32_t sequence, std::int64_t) {
       received_.push_back(
           {{events.data, events.data + events.count * kWireEventBytes}, size, sequence});
     };

@@ -65,7 +65,8 @@ class DeblurNode {
   void subscribersChanged();
   std::unique_ptr<Inputs> subscribe();
 
-  void receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence);
+  void receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
+                     std::int64_t decoding_since_ns);
   void receiveImage(const sensor_msgs::ImageConstPtr& message);
   void receiveCameraInfo(const sensor_msgs::CameraInfoConstPtr& message);
   void receiveExposure(const std_msgs::Int32ConstPtr& message);

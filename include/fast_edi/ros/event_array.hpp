@@ -29,6 +29,7 @@
 
 #include "fast_edi/core/event_wire.hpp"
 #include "fast_edi/core/types.hpp"
+#include "fast_edi/ros/steady_time.hpp"
 
 namespace fast_edi {
 
@@ -49,11 +50,15 @@ class EventArray {
   void assign(const WireEvents& events) {
     records_.assign(events.data, events.data + events.count * kWireEventBytes);
   }
+  /// When reading off the wire began, on the clock of steadyNow(); 0 if it never was on the wire.
+  std::int64_t decodingSince() const { return decoding_since_ns_; }
+  void noteDecoding() { decoding_since_ns_ = steadyNow(); }
   void reserve(std::size_t events) { records_.reserve(events * kWireEventBytes); }
   void clear() { records_.clear(); }
 
  private:
   std::vector<std::uint8_t> records_;  ///< whole records only
+  std::int64_t decoding_since_ns_ = 0;
 };
 
 /// An event array that owns nothing: valid as long as the buffer it was read from.
@@ -65,6 +70,7 @@ class EventArrayView {
 
   WireEvents events() const { return events_; }
   void assign(const WireEvents& events) { events_ = events; }
+  void noteDecoding() {}
 
  private:
   WireEvents events_;
@@ -140,6 +146,7 @@ struct ArraySerializer {
 
   template <typename Stream>
   static void read(Stream& stream, Array& array) {
+    array.noteDecoding();
     stream.next(array.header);
     stream.next(array.height);
     stream.next(array.width);

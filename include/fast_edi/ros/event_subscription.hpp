@@ -31,8 +31,11 @@ namespace fast_edi {
 class EventSubscription {
  public:
   /// \param size of the sensor, {0, 0} when what the array says is impossible
-  using Handler =
-      std::function<void(const WireEvents& events, SensorSize size, std::uint32_t sequence)>;
+  /// \param decoding_since_ns when decoding of the array began, on the clock of steadyNow(); 0 if
+  /// it
+  ///        came as a pointer
+  using Handler = std::function<void(const WireEvents& events, SensorSize size,
+                                     std::uint32_t sequence, std::int64_t decoding_since_ns)>;
 
   /// \param handler called from \p nh's callback queue
   EventSubscription(const ros::NodeHandle& nh, const std::string& topic, std::uint32_t queue_size,
