@@ -193,6 +193,7 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
   status.add("Frames out", now_.frames_out);
   status.add("Frames deblurred", c.frames_deblurred);
   status.add("Frames without an event", c.frames_still);
+  status.add("Latent images", c.latent_images);
   status.add("Frames closed by timeout", c.frames_timed_out);
   for (std::size_t i = 0; i < kPassReasonCount; ++i) {
     status.add(std::string("Frames passed through: ") + toString(static_cast<PassReason>(i)),
