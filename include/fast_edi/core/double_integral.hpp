@@ -31,7 +31,9 @@
 /// Numerics. Everything in double; error about 1e-16 * (sum of |v_{k-1} (1 - m_k)| u_k) against the
 /// integral, far below 1e-4 relative for a million events of one pixel. A value that leaves the
 /// range of double (some 2700 net events of one polarity) makes the pixel's gain 1: see close().
-/// Gains are kept within [kMinGain, kMaxGain], far beyond what any image can show.
+/// Gains are kept within [kMinGain, kMaxGain], far beyond what any image can show. Not covered: a
+/// pixel that climbs by more than some 100 net events and back within one and the same time stamp;
+/// no sensor does that, and its gain is then finite but wrong.
 #pragma once
 
 #include <cstdint>
