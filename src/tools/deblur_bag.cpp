@@ -75,8 +75,9 @@ po::options_description describeOptions(Arguments& arguments) {
 
 void printHelp(const po::options_description& options) {
   std::cout
-      << "Usage: deblur_bag --in IN.bag [--out OUT.bag] [--video OUT.mp4 --fps 500]\n"
-         "                  --config cfg/davis346.yaml [options] [parameter:=value ...]\n\n"
+      << "Usage: deblur_bag --in IN.bag --out OUT.bag --config cfg/davis346.yaml "
+         "[options] [parameter:=value ...]\n"
+         "       deblur_bag --in IN.bag --video OUT.mp4 --fps 500 --config ...\n\n"
          "Copies a recording and adds its deblurred frames as <image "
          "namespace>/deblurred/image_raw and\n.../camera_info. Parameters given as name:=value "
          "come before those of the YAML file.\n"
