@@ -187,6 +187,11 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
   status.addf("Contrast threshold ON", "%.6f", now_.thresholds.on);
   status.addf("Contrast threshold OFF", "%.6f", now_.thresholds.off);
   status.add("Contrast from", now_.contrast_origin);
+  status.addf("Contrast threshold ON, learned", "%.6f", now_.status.thresholds.on);
+  status.addf("Contrast threshold OFF, learned", "%.6f", now_.status.thresholds.off);
+  status.addf("Event delay, learned [ms]", "%.3f", milliseconds(now_.status.event_delay_ns));
+  status.add("Pairs of frames learned from", c.calibration_fits);
+  status.add("Pairs of frames without events between", c.calibration_holes);
   status.add("Sensor size [px]", sizeText(now_.status.sensor_size));
   status.addf("Exposure [ms]", "%.3f", milliseconds(now_.status.last_exposure_ns));
   status.add("Frames in", c.frames_in);

@@ -182,12 +182,17 @@ TEST_F(NodeDiagnosticsTest, ReportsLatenciesAndContrast) {
   }
   now_.thresholds = {0.26, 0.24};
   now_.contrast_origin = "biases";
+  now_.status.thresholds = {0.27, 0.23};
+  now_.status.event_delay_ns = 1'500'000;
   const auto status = report();
   EXPECT_EQ(value(status, "Close latency p50 [ms]"), "50.000");
   EXPECT_EQ(value(status, "Close latency p99 [ms]"), "99.000");
   EXPECT_EQ(value(status, "Contrast threshold ON"), "0.260000");
   EXPECT_EQ(value(status, "Contrast threshold OFF"), "0.240000");
   EXPECT_EQ(value(status, "Contrast from"), "biases");
+  EXPECT_EQ(value(status, "Contrast threshold ON, learned"), "0.270000");
+  EXPECT_EQ(value(status, "Contrast threshold OFF, learned"), "0.230000");
+  EXPECT_EQ(value(status, "Event delay, learned [ms]"), "1.500");
 }
 
 }  // namespace
