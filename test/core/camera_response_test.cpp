@@ -52,7 +52,7 @@ std::vector<NamedResponse> responses() {
           {"uneven table", CameraResponse::fromTable(unevenTable())}};
 }
 
-constexpr PixelFormat kFormats[] = {PixelFormat::kMono8, PixelFormat::kMono16,
+constexpr PixelFormat kFormats[] = {PixelFormat::kMono8, PixelFormat::kBayer8, PixelFormat::kMono16,
                                     PixelFormat::kColor8};
 
 /// An image that owns its memory, with padding behind each row.
