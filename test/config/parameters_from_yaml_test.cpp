@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fast_edi/config/parameter_table.hpp"
+#include "support/temporary_directory.hpp"
 
 namespace fast_edi {
 namespace {
@@ -252,7 +253,7 @@ TEST(ParametersFromYaml, WarnsOfUnusualThresholds) {
 class ParametersFromFile : public ::testing::Test {
  protected:
   void write(const std::string& name, const std::string& text) const {
-    std::ofstream(directory_ + name) << text;
+    std::ofstream(directory_.file(name)) << text;
   }
   std::string messageForFile(const std::string& text) const {
     write("parameters.yaml", text);
@@ -264,8 +265,8 @@ class ParametersFromFile : public ::testing::Test {
     return "accepted";
   }
 
-  const std::string directory_ = ::testing::TempDir();
-  const std::string path_ = directory_ + "parameters.yaml";
+  const TemporaryDirectory directory_;
+  const std::string path_ = directory_.file("parameters.yaml");
 };
 
 TEST_F(ParametersFromFile, FaultsNameFileAndLine) {
@@ -273,7 +274,7 @@ TEST_F(ParametersFromFile, FaultsNameFileAndLine) {
               ElementsAre(HasSubstr(path_ + ":4: lazy:"), HasSubstr(path_ + ":5: frame:")));
   EXPECT_THAT(messageForFile("a: b\n{"), HasSubstr(path_ + ":2: not YAML"));
   EXPECT_THAT(messageForFile(""), HasSubstr("contrast_threshold_on: not given"));
-  EXPECT_THROW(parametersFromFile(directory_ + "nonexistent.yaml"), ParameterError);
+  EXPECT_THROW(parametersFromFile(directory_.file("nonexistent.yaml")), ParameterError);
 }
 
 TEST_F(ParametersFromFile, ResponseFileLiesBesideTheConfiguration) {

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "support/temporary_directory.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -351,7 +353,8 @@ class ResponseFile : public ::testing::Test {
     return messageOf<std::runtime_error>([&] { CameraResponse::fromFile(path); });
   }
 
-  const std::string path_ = ::testing::TempDir() + "fast_edi_response.txt";
+  const TemporaryDirectory directory_;
+  const std::string path_ = directory_.file("response.txt");
 };
 
 std::string asText(const std::vector<double>& values) {
