@@ -73,7 +73,7 @@ bool isHole(const PixelEventLists& lists, const ExposureInterval& first,
 std::size_t levelOf(const std::uint8_t* pixel, PixelFormat format) {
   switch (format) {
     case PixelFormat::kMono16: {
-      std::uint16_t level;
+      std::uint16_t level = 0;
       std::memcpy(&level, pixel, sizeof(level));
       return static_cast<std::size_t>(level / kDn16PerDn8);
     }

@@ -3,8 +3,8 @@
 namespace fast_edi {
 
 bool isAvailable(OptionalLibrary library) {
-  // Which branches are alike depends on what is installed.
-  switch (library) {  // NOLINT(bugprone-branch-clone)
+  switch (library) {
+    // Which branches are alike depends on what is installed. NOLINTNEXTLINE(bugprone-branch-clone)
     case OptionalLibrary::kOpencvQuality:
 #ifdef FAST_EDI_HAVE_OPENCV_QUALITY
       return true;

@@ -269,8 +269,9 @@ void drawShadows(cv::Mat3f& canvas, double scale, const std::vector<Sticker>& st
   }
   for (const PlacedTag& tag : tags) {
     std::vector<cv::Point> points;
-    for (const cv::Point2d& corner : tag.corners(kTagPaperFactor))
+    for (const cv::Point2d& corner : tag.corners(kTagPaperFactor)) {
       points.push_back(origin + corner);
+    }
     cv::fillConvexPoly(mask, points, 1.0);
   }
   cv::GaussianBlur(mask, mask, cv::Size(), kSoftnessPx);
