@@ -27,6 +27,9 @@ inline float floatOf(std::int32_t bits) {
 }
 
 constexpr int kMantissaBits = 23;
+/// What one more in the exponent adds to the bits. Multiplied, since a negative number must not be
+/// shifted to the left.
+constexpr std::int32_t kExponentUnit = 1 << kMantissaBits;
 constexpr int kExponentBias = 127;
 // ln 2 in two parts: the first has few digits, so that its product with a small integer is exact.
 constexpr float kLn2High = 0.693359375F;
@@ -41,7 +44,7 @@ inline float fastLog(float x) {
   constexpr std::int32_t kSqrtHalfBits = 0x3f3504f3;
   const std::int32_t offset_bits = bitsOf(x) - kSqrtHalfBits;
   const std::int32_t exponent = offset_bits >> kMantissaBits;
-  const float f = floatOf(bitsOf(x) - (exponent << kMantissaBits)) - 1.0F;
+  const float f = floatOf(bitsOf(x) - exponent * kExponentUnit) - 1.0F;
   const auto e = static_cast<float>(exponent);
   float p = 7.0376836292e-2F;
   p = p * f - 1.1514610310e-1F;
