@@ -75,7 +75,6 @@ class Ours : public Contender {
     parameters.thresholds = kThresholds;
     parameters.max_buffered_events = kMaxBufferedEvents;
     parameters.filter.enabled = filter;
-    parameters.filter.enabled = false;
     return parameters;
   }
 
