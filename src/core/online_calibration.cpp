@@ -123,10 +123,10 @@ CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraR
     if (isHole(lists, previous_window_, frame.window)) {
       outcome = CalibrationOutcome::kNoEventsBetween;
     } else {
-      gather(frame, lists);
+      const Band band = gather(frame, lists);
       NormalEquations pair;
       outcome = CalibrationOutcome::kTooFewPixels;
-      if (fit(pair) >= kLeastPixels) {
+      if (fit(band, pair) >= kLeastPixels) {
         learned_.matrix = kForgetting * learned_.matrix + pair.matrix;
         learned_.vector = kForgetting * learned_.vector + pair.vector;
         takeOver();
@@ -170,9 +170,26 @@ void OnlineCalibration::loadLogLatent(const Frame& frame, const CameraResponse& 
   }
 }
 
-/// Sums up what every event of the pair says about its pixel.
-void OnlineCalibration::gather(const Frame& frame, const PixelEventLists& lists) {
-  std::fill(evidence_.begin(), evidence_.end(), PixelEvidence{0.0F, 0.0F, 0.0F, 0.0F, 0.0F});
+/// All pixels, or as many rows as hold about Settings::most_events of the pair's events.
+OnlineCalibration::Band OnlineCalibration::nextBand(std::uint64_t events) {
+  const auto width = static_cast<std::size_t>(size_.width);
+  if (events <= settings_.most_events) {
+    return {0, size_.pixelCount()};
+  }
+  const auto height = static_cast<std::uint64_t>(size_.height);
+  const int rows = std::max(1, static_cast<int>(height * settings_.most_events / events));
+  if (next_row_ + rows > size_.height) {
+    next_row_ = 0;
+  }
+  const Band band{static_cast<std::size_t>(next_row_) * width,
+                  static_cast<std::size_t>(rows) * width};
+  next_row_ += rows;
+  return band;
+}
+
+/// Sums up what the events of the pair say about the pixels of a band.
+OnlineCalibration::Band OnlineCalibration::gather(const Frame& frame,
+                                                  const PixelEventLists& lists) {
   const ExposureInterval& first = previous_window_;
   const ExposureInterval& second = frame.window;
   constexpr auto kNsPerMs = static_cast<float>(kNanosecondsPerMillisecond);
@@ -180,13 +197,21 @@ void OnlineCalibration::gather(const Frame& frame, const PixelEventLists& lists)
   const float per_second_ns = 1.0F / static_cast<float>(second.length());
   const float step[2] = {static_cast<float>(in_force_.thresholds.step(false)),
                          static_cast<float>(in_force_.thresholds.step(true))};
+  const std::uint64_t begin = lists.lowerBound(first.start_ns);
   const std::uint64_t end = lists.lowerBound(second.end_ns);
-  for (std::uint64_t sequence = lists.lowerBound(first.start_ns); sequence < end;) {
+  const Band band = nextBand(end - begin);
+  std::fill_n(evidence_.begin(), band.pixels, PixelEvidence{0.0F, 0.0F, 0.0F, 0.0F, 0.0F});
+  const auto first_pixel = static_cast<std::uint32_t>(band.first_pixel);
+  for (std::uint64_t sequence = begin; sequence < end;) {
     const PackedEventSpan span = lists.span(sequence, end);
     for (std::size_t i = 0; i < span.count; ++i) {
+      const std::uint32_t in_band = (span.data[i].code >> 1) - first_pixel;
+      if (in_band >= band.pixels) {
+        continue;
+      }
       const std::int64_t t_ns = span.base_ns + static_cast<std::int64_t>(span.data[i].dt_ns);
       const std::uint32_t on = span.data[i].code & 1u;
-      PixelEvidence& pixel = evidence_[span.data[i].code >> 1];
+      PixelEvidence& pixel = evidence_[in_band];
       float weight = 1.0F;
       if (t_ns < first.end_ns) {
         weight = static_cast<float>(t_ns - first.start_ns) * per_first_ns;
@@ -203,22 +228,25 @@ void OnlineCalibration::gather(const Frame& frame, const PixelEventLists& lists)
     }
     sequence += span.count;
   }
+  return band;
 }
 
 /// Adds up the equations of a pair; returns how many pixels told something.
-std::size_t OnlineCalibration::fit(NormalEquations& equations) const {
+std::size_t OnlineCalibration::fit(const Band& band, NormalEquations& equations) const {
   const Eigen::Vector3d theta(in_force_.thresholds.on, in_force_.thresholds.off,
                               static_cast<double>(in_force_.event_delay_ns) /
                                   static_cast<double>(kNanosecondsPerMillisecond));
   std::size_t pixels = 0;
-  for (std::size_t i = 0; i < evidence_.size(); ++i) {
+  for (std::size_t i = 0; i < band.pixels; ++i) {
     const PixelEvidence& pixel = evidence_[i];
     const float change = std::fabs(pixel.on - pixel.off);
-    if (change < kLeastChange || pixel.count > kMostEventsPerChange * change + kSpareEvents) {
+    if (change < kLeastChange ||
+        pixel.count > kMostEventsPerChange * change + kSpareEvents) {
       continue;
     }
+    const std::size_t at = band.first_pixel + i;
     const auto residual =
-        static_cast<double>(log_latent_[i] - previous_log_latent_[i] - pixel.level);
+        static_cast<double>(log_latent_[at] - previous_log_latent_[at] - pixel.level);
     if (std::isnan(residual)) {
       continue;  // one of both grey levels is no evidence
     }

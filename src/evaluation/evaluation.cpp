@@ -75,6 +75,10 @@ void EvaluationRecorder::add(const ComparedFrame& frame) {
     }
     return;
   }
+  if (unscored_ < scorer_.options().first_frames_unscored) {
+    ++unscored_;
+    return;
+  }
   std::array<cv::Mat, kMethodCount> images = frame.images;
   const cv::Mat truth = truth_(frame.stamp_ns);
   images[indexOf(Method::kTruth)] = truth;

@@ -83,6 +83,11 @@ po::options_description describeOptions(Arguments& arguments) {
   add("brisque-range", text(scorer.brisque_range_file, "FILE"), "BRISQUE feature ranges");
   add("full-reference-only", po::bool_switch(&scorer.full_reference_only),
       "PSNR and SSIM alone: fast");
+  add("skip",
+      po::value(&scorer.first_frames_unscored)
+          ->default_value(scorer.first_frames_unscored)
+          ->value_name("N"),
+      "first N frames of each recording are deblurred but not scored: what comes after learning");
   const auto threshold = [](double& target) {
     return po::value(&target)->default_value(target, decimal(target))->value_name("C");
   };
@@ -162,6 +167,9 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   }
   if (arguments.sequences != arguments.bag.empty()) {
     throw po::error("expected either a BAG or --sequences");
+  }
+  if (arguments.scorer.first_frames_unscored < 0) {
+    throw po::error("--skip: expected 0 or more frames");
   }
   if (!(arguments.threshold_factor > 0.0)) {
     throw po::error("--threshold-factor: expected a number above 0");

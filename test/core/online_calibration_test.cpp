@@ -155,6 +155,14 @@ TEST(OnlineCalibration, FindsBothAtOnce) {
   EXPECT_NEAR(static_cast<double>(found.event_delay_ns), 2.0 * kMs, 0.5 * kMs);
 }
 
+TEST(OnlineCalibration, APartOfManyEventsIsEnough) {
+  // Some 12,000 events in a pair: bands of a few rows.
+  const Calibration found =
+      calibrated(RampScene(0), {0.8 * kTrue.on, 1.2 * kTrue.off}, {true, false, 2000});
+  EXPECT_NEAR(found.thresholds.on / kTrue.on, 1.0, 0.05);
+  EXPECT_NEAR(found.thresholds.off / kTrue.off, 1.0, 0.05);
+}
+
 TEST(OnlineCalibration, StaysWithinItsLimits) {
   const Calibration found =
       calibrated(RampScene(0), {2.5 * kTrue.on, 0.4 * kTrue.off}, {true, false});

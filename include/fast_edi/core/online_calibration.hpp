@@ -25,7 +25,9 @@
 /// towards the nominal values, exponential forgetting, and limits: thresholds within 30 % of
 /// nominal, the delay within 5 ms.
 ///
-/// Each pair is used until kEagerFits have told something, then one of kRestFrames.
+/// Each pair is used until kEagerFits have told something, then one of kRestFrames. A pair of more
+/// than Settings::most_events tells more than enough: a band of rows with about that many is used,
+/// and the next pair takes the next band.
 ///
 /// Recordings without events between exposures exist (a driver dropped them); there the fit would
 /// be wrong and is not made.
@@ -64,8 +66,9 @@ class OnlineCalibration {
   static constexpr int kRestFrames = 10;
 
   struct Settings {
-    bool contrast = true;  ///< learn the thresholds
-    bool delay = true;     ///< learn the delay
+    bool contrast = true;                   ///< learn the thresholds
+    bool delay = true;                      ///< learn the delay
+    std::uint64_t most_events = 2'000'000;  ///< of a pair
   };
 
   /// A deblurred frame. Times are event times: shifted by time offset and delay already.
@@ -113,9 +116,16 @@ class OnlineCalibration {
     Eigen::Vector3d vector = Eigen::Vector3d::Zero();
   };
 
+  /// Pixels of adjacent rows.
+  struct Band {
+    std::size_t first_pixel;
+    std::size_t pixels;
+  };
+
   void loadLogLatent(const Frame& frame, const CameraResponse& response);
-  void gather(const Frame& frame, const PixelEventLists& lists);
-  std::size_t fit(NormalEquations& equations) const;
+  Band nextBand(std::uint64_t events);
+  Band gather(const Frame& frame, const PixelEventLists& lists);
+  std::size_t fit(const Band& band, NormalEquations& equations) const;
   void takeOver();
 
   SensorSize size_;
@@ -124,14 +134,15 @@ class OnlineCalibration {
   Calibration in_force_;
   NormalEquations learned_;
   int fits_ = 0;
-  int resting_ = 0;  ///< frames until the next one is needed
+  int resting_ = 0;   ///< frames until the next one is needed
+  int next_row_ = 0;  ///< of the next band
 
   bool have_previous_ = false;
   ExposureInterval previous_window_;
   std::int64_t previous_reference_ns_ = 0;
   std::vector<float> log_latent_;  ///< log B + log gain; NaN where B is no evidence
   std::vector<float> previous_log_latent_;
-  std::vector<PixelEvidence> evidence_;
+  std::vector<PixelEvidence> evidence_;  ///< of the band, from its first pixel on
 };
 
 }  // namespace fast_edi

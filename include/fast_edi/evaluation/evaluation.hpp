@@ -30,7 +30,7 @@ struct FrameFigures {
 /// One recording or sequence.
 struct Evaluation {
   std::string name;
-  std::vector<FrameFigures> frames;               ///< compared ones alone
+  std::vector<FrameFigures> frames;               ///< those compared and scored
   std::map<std::string, std::uint64_t> left_out;  ///< reason -> frames that were not compared
   /// The compared frame with the most events, for the eye. Empty when there is none.
   std::array<cv::Mat, kMethodCount> example;
@@ -65,6 +65,7 @@ class EvaluationRecorder {
   Evaluation evaluation_;
   std::array<FeatureMemory, kMethodCount> memories_;
   std::uint64_t example_events_ = 0;
+  int unscored_ = 0;  ///< of the first frames
 };
 
 }  // namespace fast_edi

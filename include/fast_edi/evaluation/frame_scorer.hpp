@@ -55,6 +55,7 @@ struct ScorerOptions {
   std::string brisque_range_file = kBrisqueRangeFile;
   std::string sseq_folder;           ///< empty: no SSEQ
   bool full_reference_only = false;  ///< PSNR and SSIM alone: fast, for tuning
+  int first_frames_unscored = 0;     ///< of each recording: time to learn from it
 };
 
 /// Features of the frame before, one memory for each method. clear() where a frame is missing.
@@ -75,6 +76,8 @@ class FrameScorer {
 
   /// Measures that are not to be had, each with its reason: "SSEQ: no model folder was given".
   const std::vector<std::string>& missing() const { return missing_; }
+
+  const ScorerOptions& options() const { return options_; }
 
   /// \param image CV_8UC1
   /// \param truth CV_8UC1 of the same size, or empty
