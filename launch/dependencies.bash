@@ -13,7 +13,7 @@ FAST_EDI_NOETIC=/opt/ros/noetic
 # Packages of Debian 12.
 FAST_EDI_DEBIAN_BUILD=(
   g++ make cmake catkin
-  libroscpp-dev libnodeletlib-dev libcv-bridge-dev libimage-transport-dev librosbag-dev
+  libroscpp-dev libroslib-dev libnodeletlib-dev libcv-bridge-dev libimage-transport-dev librosbag-dev
   libdynamic-reconfigure-config-init-mutex-dev libdiagnostic-updater-dev
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
   libapriltag-dev libbz2-dev liblz4-dev
@@ -31,7 +31,7 @@ FAST_EDI_DEBIAN_TEST=(
 # The same on Ubuntu 20.04 with the ROS Noetic packages.
 FAST_EDI_NOETIC_BUILD=(
   g++ make cmake ros-noetic-catkin
-  ros-noetic-roscpp ros-noetic-nodelet ros-noetic-cv-bridge ros-noetic-image-transport
+  ros-noetic-roscpp ros-noetic-roslib ros-noetic-nodelet ros-noetic-cv-bridge ros-noetic-image-transport
   ros-noetic-rosbag ros-noetic-dynamic-reconfigure ros-noetic-diagnostic-updater
   ros-noetic-pluginlib ros-noetic-sensor-msgs ros-noetic-std-msgs ros-noetic-apriltag
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev

@@ -20,6 +20,10 @@ void ConfigFaults::add(const YAML::Node& where, const std::string& text) {
   }
 }
 
+void ConfigFaults::append(const ConfigFaults& others) {
+  lines_.insert(lines_.end(), others.lines_.begin(), others.lines_.end());
+}
+
 std::string ConfigFaults::text() const {
   std::string text;
   for (const std::string& line : lines_) {

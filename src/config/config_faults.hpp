@@ -18,6 +18,9 @@ class ConfigFaults {
   /// \param where the node at fault: its line is named when it comes from a file
   void add(const YAML::Node& where, const std::string& text);
 
+  /// Takes over the lines of \p others as they are.
+  void append(const ConfigFaults& others);
+
   bool empty() const { return lines_.empty(); }
   std::size_t size() const { return lines_.size(); }
   /// One line for each fault.

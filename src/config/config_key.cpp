@@ -6,12 +6,16 @@
 #include <cstdio>
 #include <optional>
 
+#include "config_file.hpp"
 #include "nearest_key.hpp"
 
 namespace fast_edi {
 namespace {
 
 constexpr double kLargestPlainInteger = 1e15;
+/// Names within this editDistance() are one meant for the other: two neighbouring letters swapped,
+/// one letter replaced, two left out or added.
+constexpr std::size_t kMisspelling = 4;
 
 std::optional<double> asNumber(const YAML::Node& node) {
   double value = 0.0;
@@ -31,14 +35,36 @@ bool answersTo(const ConfigKey& key, const std::string& name) {
              key.other_spellings.end();
 }
 
-std::string unknownText(const std::string& name, const std::vector<ConfigKey>& keys,
-                        const std::string& prefix) {
+std::string nearestOf(const std::vector<ConfigKey>& keys, const std::string& name) {
   std::vector<std::string> known;
   for (const ConfigKey& key : keys) {
     known.push_back(key.description.name);
     known.insert(known.end(), key.other_spellings.begin(), key.other_spellings.end());
   }
-  return prefix + name + ": unknown, the nearest known key is " + prefix + nearestKey(name, known);
+  return nearestKey(name, known);
+}
+
+/// The map in a file of its own. Its faults name that file.
+void readMapFile(const YAML::Node& value, const ConfigKey& key, const std::string& path,
+                 ParameterDraft& draft, ConfigFaults& faults) {
+  const std::string file = resolvedPath(value.Scalar(), draft.base_directory);
+  ConfigFaults file_faults(file);
+  try {
+    const YAML::Node map = yamlFromFile(file);
+    if (map.IsMap()) {
+      readMap(map, key.members, path + "/", draft, file_faults, key.is_foreign);
+    } else {
+      file_faults.add(map, "found " + foundText(map) + ", expected a map of " + path);
+    }
+  } catch (const ParameterError& error) {
+    faults.add(value, path + ": " + error.what());
+    draft.faulty.insert(path);
+    return;
+  }
+  if (!file_faults.empty()) {
+    draft.faulty.insert(path);
+    faults.append(file_faults);
+  }
 }
 
 void readEntry(const YAML::Node& value, const ConfigKey& key, const std::string& path,
@@ -47,9 +73,11 @@ void readEntry(const YAML::Node& value, const ConfigKey& key, const std::string&
   if (key.members.empty()) {
     fault = key.read(value, draft);
   } else if (value.IsMap()) {
-    readMap(value, key.members, path + "/", draft, faults);
+    readMap(value, key.members, path + "/", draft, faults, key.is_foreign);
+  } else if (key.may_be_file && value.IsScalar() && !value.Scalar().empty()) {
+    readMapFile(value, key, path, draft, faults);
   } else {
-    fault = expected(value, "a map");
+    fault = expected(value, key.may_be_file ? "a map or the path of a YAML file" : "a map");
   }
   if (!fault.empty()) {
     draft.faulty.insert(path);
@@ -161,7 +189,8 @@ ConfigKey mapKey(const KeyText& text, std::vector<ConfigKey> members) {
 }
 
 void readMap(const YAML::Node& map, const std::vector<ConfigKey>& keys, const std::string& prefix,
-             ParameterDraft& draft, ConfigFaults& faults) {
+             ParameterDraft& draft, ConfigFaults& faults,
+             const std::function<bool(const std::string&)>& is_foreign) {
   for (const auto& entry : map) {
     if (!entry.first.IsScalar()) {
       faults.add(entry.first, "a key is " + foundText(entry.first) + ", expected a name");
@@ -172,7 +201,11 @@ void readMap(const YAML::Node& map, const std::vector<ConfigKey>& keys, const st
       return answersTo(candidate, name);
     });
     if (key == keys.end()) {
-      faults.add(entry.first, unknownText(name, keys, prefix));
+      const std::string nearest = nearestOf(keys, name);
+      if (!is_foreign || !is_foreign(name) || editDistance(name, nearest) <= kMisspelling) {
+        faults.add(entry.first,
+                   prefix + name + ": unknown, the nearest known key is " + prefix + nearest);
+      }
       continue;
     }
     const std::string path = prefix + key->description.name;

@@ -24,6 +24,11 @@ struct ConfigKey {
   std::vector<ConfigKey> members;
   /// Accepted besides the name.
   std::vector<std::string> other_spellings;
+  /// Of a map: keys that may stand in it and mean nothing here. One that looks like a misspelt
+  /// member is a fault all the same. Empty: there are none.
+  std::function<bool(const std::string&)> is_foreign;
+  /// Of a map: instead of it, the value may be the path of a YAML file that holds it.
+  bool may_be_file = false;
 };
 
 struct NumberRange {
@@ -85,7 +90,9 @@ ConfigKey choiceKey(const KeyText& text, std::vector<std::pair<std::string, Choi
 
 /// Reads every entry of a map by the key of its name. Unknown and repeated keys are faults.
 /// \param prefix of the keys in messages and in the draft, e.g. "biases/"
+/// \param is_foreign see ConfigKey
 void readMap(const YAML::Node& map, const std::vector<ConfigKey>& keys, const std::string& prefix,
-             ParameterDraft& draft, ConfigFaults& faults);
+             ParameterDraft& draft, ConfigFaults& faults,
+             const std::function<bool(const std::string&)>& is_foreign = {});
 
 }  // namespace fast_edi

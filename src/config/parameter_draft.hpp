@@ -10,6 +10,8 @@
 namespace fast_edi {
 
 struct ParameterDraft {
+  /// Where relative paths start.
+  std::string base_directory;
   LoadedParameters loaded;
   BiasConfiguration biases;
   std::string response_file;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "driver_keys.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -176,12 +178,21 @@ std::vector<ConfigKey> filterKeys() {
   };
 }
 
+ConfigKey biasesKey() {
+  ConfigKey key = mapKey({"biases", "", "none",
+                          "bias settings that the thresholds are computed from; or the path of a "
+                          "YAML file of them, such as the driver's"},
+                         biasKeys());
+  key.is_foreign = isDriverKey;
+  key.may_be_file = true;
+  return key;
+}
+
 std::vector<ConfigKey> buildTopLevelKeys() {
   std::vector<ConfigKey> keys = {
       thresholdKey("contrast_threshold_on", &ContrastThresholds::on, "ON"),
       thresholdKey("contrast_threshold_off", &ContrastThresholds::off, "OFF"),
-      mapKey({"biases", "", "none", "bias settings that the thresholds are computed from"},
-             biasKeys()),
+      biasesKey(),
       weightingKey(),
       instantKey("reference", &DeblurParameters::reference,
                  "instant of the exposure that the latent image shows"),
@@ -206,8 +217,7 @@ std::vector<ConfigKey> buildTopLevelKeys() {
               "next array confirms it"),
       latentImagesKey(),
       textKey({"response_file", "", "none",
-               "camera response: 256 natural-log irradiances, one for each 8-bit DN; a relative "
-               "path starts at the configuration file"},
+               "camera response: 256 natural-log irradiances, one for each 8-bit DN"},
               [](const std::string& value, ParameterDraft& draft) { draft.response_file = value; }),
       numberKey(
           {"response_offset_dn", "DN", "0", "offset d of the linear response, exposure = DN + d"},

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "config_faults.hpp"
+#include "config_file.hpp"
 #include "parameter_draft.hpp"
 #include "parameter_keys.hpp"
 
@@ -91,8 +92,7 @@ void decideThresholds(const YAML::Node& root, ParameterDraft& draft, ConfigFault
   }
 }
 
-void loadResponse(const YAML::Node& root, const std::string& base_directory, ParameterDraft& draft,
-                  ConfigFaults& faults) {
+void loadResponse(const YAML::Node& root, ParameterDraft& draft, ConfigFaults& faults) {
   if (draft.response_file.empty()) {
     draft.loaded.deblur.response = CameraResponse::linear(draft.response_offset_dn);
     return;
@@ -102,23 +102,11 @@ void loadResponse(const YAML::Node& root, const std::string& base_directory, Par
                "response_offset_dn: belongs to the linear response, expected 0 beside "
                "response_file");
   }
-  const std::filesystem::path path(draft.response_file);
   try {
-    draft.loaded.deblur.response = CameraResponse::fromFile(
-        (path.is_absolute() ? path : std::filesystem::path(base_directory) / path).string());
+    draft.loaded.deblur.response =
+        CameraResponse::fromFile(resolvedPath(draft.response_file, draft.base_directory));
   } catch (const std::runtime_error& error) {
     faults.add(root["response_file"], std::string("response_file: ") + error.what());
-  }
-}
-
-YAML::Node yamlFromFile(const std::string& path) {
-  try {
-    return YAML::LoadFile(path);
-  } catch (const YAML::BadFile&) {
-    throw ParameterError(path + ": cannot be read, expected a YAML file");
-  } catch (const YAML::ParserException& error) {
-    throw ParameterError(path + ":" + std::to_string(error.mark.line + 1) +
-                         ": not YAML: " + error.msg);
   }
 }
 
@@ -131,9 +119,10 @@ LoadedParameters load(const YAML::Node& root, const std::string& base_directory,
     throw ParameterError(faults.text());
   }
   ParameterDraft draft;
+  draft.base_directory = base_directory;
   readMap(root, topLevelKeys(), "", draft, faults);
   decideThresholds(root, draft, faults);
-  loadResponse(root, base_directory, draft, faults);
+  loadResponse(root, draft, faults);
   if (!faults.empty()) {
     throw ParameterError(faults.text());
   }

@@ -1,10 +1,12 @@
 #include "fast_edi/ros/parameter_loading.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <sstream>
 #include <string>
 
+#include <ros/package.h>
 #include <ros/param.h>
 
 #include "fast_edi/config/parameters_from_yaml.hpp"
@@ -62,6 +64,16 @@ YAML::Node yamlFromXmlRpc(const XmlRpc::XmlRpcValue& value) {
   return convert(value, "parameters");
 }
 
+void makePathsAbsolute(YAML::Node& map) {
+  for (const char* key : {"response_file", "biases"}) {
+    const YAML::Node value = map[key];
+    if (value.IsDefined() && value.IsScalar() && !value.Scalar().empty() &&
+        std::filesystem::path(value.Scalar()).is_relative()) {
+      map[key] = ros::package::getPath("fast_edi") + "/cfg/" + value.Scalar();
+    }
+  }
+}
+
 YAML::Node privateParameters(const ros::NodeHandle& private_nh) {
   XmlRpc::XmlRpcValue value;
   if (!ros::param::get(private_nh.getNamespace(), value) ||
@@ -72,6 +84,7 @@ YAML::Node privateParameters(const ros::NodeHandle& private_nh) {
   for (const char* foreign : {"image_transport", "diagnostic_period"}) {
     map.remove(foreign);
   }
+  makePathsAbsolute(map);
   return map;
 }
 

@@ -32,7 +32,8 @@ struct Arguments {
 void printHelp(const po::options_description& options) {
   std::cout << "Usage: contrast_from_bias FILE.yaml [key:=value ...]\n\n"
                "Prints the bias currents and contrast thresholds that a configuration stands for, "
-               "e.g. of\ncfg/davis346.yaml. Values given as key:=value replace those of the file, "
+               "e.g. of\ncfg/davis346.yaml, or that the driver's own file of biases stands for. "
+               "Values given as key:=value replace those of the file, "
                "e.g. biases/OnBn_fine:=200.\n\n"
             << options
             << "\nExit code: 0 thresholds printed (warnings included); 1 the configuration cannot "
@@ -92,9 +93,28 @@ void printThreshold(const std::string& name, double threshold, bool from_biases)
             << std::defaultfloat;
 }
 
+/// A file of the driver's has the biases at its top level, where a configuration has them in a map.
+bool isDriversFile(const std::string& path) {
+  try {
+    const YAML::Node root = YAML::LoadFile(path);
+    return root.IsMap() && root["DiffBn_coarse"].IsDefined();
+  } catch (const YAML::Exception&) {
+    return false;  // what is wrong with it is said when it is read as a configuration
+  }
+}
+
+fast_edi::LoadedParameters load(const Arguments& arguments) {
+  if (!isDriversFile(arguments.file)) {
+    return fast_edi::parametersFromFile(arguments.file, arguments.overrides);
+  }
+  YAML::Node root(YAML::NodeType::Map);
+  root["biases"] = arguments.file;
+  fast_edi::applyOverrides(root, arguments.overrides);
+  return fast_edi::parametersFromYaml(root, ".");
+}
+
 void run(const Arguments& arguments) {
-  const fast_edi::LoadedParameters parameters =
-      fast_edi::parametersFromFile(arguments.file, arguments.overrides);
+  const fast_edi::LoadedParameters parameters = load(arguments);
   if (parameters.biases) {
     printBiases(*parameters.biases);
   }

@@ -29,6 +29,17 @@ const std::string kStockBiases =
     "biases: {DiffBn_coarse: 4, DiffBn_fine: 39, ONBn_coarse: 6, ONBn_fine: 200, "
     "OFFBn_coarse: 4, OFFBn_fine: 0}\n";
 
+/// With everything that davis_ros_driver's own files have; values of its indoors.yaml.
+const std::string kDriverSettings =
+    "DiffBn_coarse: 2, DiffBn_fine: 39, OFFBn_coarse: 1, OFFBn_fine: 62, ONBn_coarse: 4, "
+    "ONBn_fine: 200, PrBp_coarse: 3, PrBp_fine: 72, PrSFBp_coarse: 3, PrSFBp_fine: 96, "
+    "RefrBp_coarse: 3, RefrBp_fine: 52, ADC_RefHigh_volt: 24, ADC_RefHigh_curr: 7, "
+    "aps_enabled: true, dvs_enabled: true, autoexposure_enabled: false, exposure: 4000, "
+    "frame_delay: 0, imu_acc_scale: 3, imu_enabled: true, imu_gyro_scale: 3, max_events: 0, "
+    "streaming_rate: 30, background_activity_filter_enabled: true, refractory_period_time: 2, "
+    "skip_every: 0, polarity_flatten: false, roi_start_row: 0, aps_roi_end_row: 259, "
+    "pixel_0_row: 0, pixel_auto_train: false, groups: {id: 0}";
+
 LoadedParameters load(const std::string& yaml) {
   return parametersFromYaml(YAML::Load(yaml), "");
 }
@@ -189,6 +200,23 @@ TEST(ParametersFromYaml, UnknownKeysNameTheNearestKnownOne) {
       HasSubstr("biases/ONBn_course: unknown, the nearest known key is biases/ONBn_coarse"));
 }
 
+TEST(ParametersFromYaml, BiasesMayStandAmongTheDriversOtherSettings) {
+  const LoadedParameters loaded = load("biases: {" + kDriverSettings + "}");
+  EXPECT_NEAR(loaded.deblur.thresholds.on, 0.382070, 1e-5);
+  EXPECT_NEAR(loaded.deblur.thresholds.off, 0.106891, 1e-5);
+}
+
+TEST(ParametersFromYaml, MisspeltBiasesAreNoSettingsOfTheDriver) {
+  for (const char* wrong : {"ONBm_fine", "OFFBn_fien", "OfBn_coarse", "DifBn_fine", "Diffbn_fine",
+                            "kapa_n", "coarse_conventions", "capacitor_ration"}) {
+    EXPECT_THAT(messageFor("biases: {" + kDriverSettings + ", " + wrong + ": 1}"),
+                HasSubstr("biases/" + std::string(wrong) + ": unknown, the nearest known key is"));
+  }
+  EXPECT_THAT(messageFor(kThresholds + "biases: {contrast: 1}"),
+              HasSubstr("biases/contrast: unknown"));
+  EXPECT_THAT(messageFor(kThresholds + "PrBp_coarse: 1"), HasSubstr("PrBp_coarse: unknown"));
+}
+
 TEST(ParametersFromYaml, KeysOfStepsThatDoNotExistAreUnknown) {
   for (const char* key : {"latent_video", "temporal_filter"}) {
     EXPECT_THAT(messageFor(kThresholds + key + ": 1"), HasSubstr(std::string(key) + ": unknown"));
@@ -214,7 +242,7 @@ TEST(ParametersFromYaml, RefusesWrongTypesAndRanges) {
       {"frame_id: {a: b}", "frame_id: found a map, expected a text"},
       {"passthrough: 1", "passthrough: found '1', expected true or false"},
       {"lazy:", "lazy: found nothing, expected true or false"},
-      {"biases: 4", "biases: found '4', expected a map"},
+      {"biases: ''", "biases: found '', expected a map or the path of a YAML file"},
       {"biases: {DiffBn_coarse: 8}", "biases/DiffBn_coarse: found '8', expected an integer 0..7"},
       {"biases: {OFFBn_fine: 256}", "biases/OffBn_fine: found '256', expected an integer 0..255"},
       {"biases: {coarse_convention: jaer}", "expected one of: libcaer, jaer_xml"},
@@ -287,6 +315,32 @@ TEST_F(ParametersFromFile, ResponseFileLiesBesideTheConfiguration) {
   EXPECT_FALSE(parametersFromFile(path_).deblur.response.isLinear());
   EXPECT_THAT(messageForFile(kThresholds + "response_file: response.txt\nresponse_offset_dn: 5\n"),
               HasSubstr("response_offset_dn: belongs to the linear response"));
+}
+
+TEST_F(ParametersFromFile, BiasesMayLieInAFileOfTheDriver) {
+  write("indoors.yaml", "{" + kDriverSettings + "}\n");
+  write("parameters.yaml", "biases: indoors.yaml\n");
+  const LoadedParameters loaded = parametersFromFile(path_);
+  EXPECT_NEAR(loaded.deblur.thresholds.on, 0.382070, 1e-5);
+  EXPECT_NEAR(loaded.deblur.thresholds.off, 0.106891, 1e-5);
+  EXPECT_EQ(loaded.contrast_origin, "biases");
+}
+
+TEST_F(ParametersFromFile, FaultsOfAFileOfBiasesNameThatFile) {
+  const std::string biases = directory_.file("biases.yaml");
+  const std::string text = "biases: biases.yaml\n";
+  EXPECT_THAT(messageForFile(text),
+              HasSubstr(path_ + ":1: biases: " + biases + ": cannot be read"));
+  write("biases.yaml", "DiffBn_coarse: 4\nDiffBn_fine: 300\nONBnfine: 3\n");
+  EXPECT_THAT(linesOf(messageForFile(text)),
+              ElementsAre(HasSubstr(biases + ":2: biases/DiffBn_fine: found '300'"),
+                          HasSubstr(biases + ":3: biases/ONBnfine: unknown")));
+  write("biases.yaml", "DiffBn_coarse: 4\nDiffBn_fine: 39\n");
+  EXPECT_THAT(messageForFile(text), HasSubstr("OnBn_coarse, OnBn_fine missing"));
+  write("biases.yaml", "- 1\n");
+  EXPECT_THAT(messageForFile(text), HasSubstr("found a list, expected a map of biases"));
+  EXPECT_THAT(messageForFile("biases: [1]"),
+              HasSubstr("biases: found a list, expected a map or the path of a YAML file"));
 }
 
 TEST_F(ParametersFromFile, OverridesReplaceValuesOfTheFile) {

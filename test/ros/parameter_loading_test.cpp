@@ -1,9 +1,11 @@
 #include "fast_edi/ros/parameter_loading.hpp"
 
+#include <filesystem>
 #include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
+#include <ros/package.h>
 
 #include "fast_edi/config/parameters_from_yaml.hpp"
 
@@ -46,6 +48,29 @@ TEST(YamlFromXmlRpc, RefusesWhatNoParameterIs) {
   } catch (const ParameterError& error) {
     EXPECT_NE(std::string(error.what()).find("parameters/biases/blob"), std::string::npos);
   }
+}
+
+TEST(MakePathsAbsolute, StartsAtTheFolderOfConfigurations) {
+  YAML::Node map = YAML::Load("{response_file: a.txt, biases: sub/b.yaml, frame_id: c}");
+  makePathsAbsolute(map);
+  const std::string folder = ros::package::getPath("fast_edi") + "/cfg/";
+  EXPECT_TRUE(std::filesystem::exists(folder + "davis346.yaml"));
+  EXPECT_EQ(map["response_file"].Scalar(), folder + "a.txt");
+  EXPECT_EQ(map["biases"].Scalar(), folder + "sub/b.yaml");
+  EXPECT_EQ(map["frame_id"].Scalar(), "c");
+}
+
+TEST(MakePathsAbsolute, LeavesTheRestAlone) {
+  const std::string text = "{response_file: \"\", biases: {kappa_n: 0.7}}";
+  YAML::Node map = YAML::Load(text);
+  makePathsAbsolute(map);
+  EXPECT_EQ(YAML::Dump(map), YAML::Dump(YAML::Load(text)));
+  map = YAML::Load("{response_file: /a.txt}");
+  makePathsAbsolute(map);
+  EXPECT_EQ(map["response_file"].Scalar(), "/a.txt");
+  map = YAML::Load("{frame_id: c}");
+  makePathsAbsolute(map);
+  EXPECT_EQ(map.size(), 1u);
 }
 
 }  // namespace

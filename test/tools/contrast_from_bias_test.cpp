@@ -1,9 +1,11 @@
 /// The program `contrast_from_bias`, run as a user runs it.
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <string>
 
 #include "support/command.hpp"
+#include "support/temporary_directory.hpp"
 
 namespace fast_edi {
 namespace {
@@ -24,6 +26,17 @@ TEST(ContrastFromBiasTool, PrintsCurrentsGainAndThresholds) {
             ContainsRegex("OnBn +5 +255 +3.875000e-07"), ContainsRegex("OffBn +4 +1 +1.899490e-10"),
             HasSubstr("= 0.0659341"), ContainsRegex("C_ON +0.260911 +from biases"),
             ContainsRegex("C_OFF +-0.241554 +from biases")));
+}
+
+TEST(ContrastFromBiasTool, ReadsAFileOfTheDriver) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory.file("indoors.yaml"))
+      << "{DiffBn_coarse: 2, DiffBn_fine: 39, OFFBn_coarse: 1, OFFBn_fine: 62, ONBn_coarse: 4,\n"
+         "  ONBn_fine: 200, PrBp_coarse: 3, PrBp_fine: 72, exposure: 4000, streaming_rate: 30}\n";
+  const auto result = testing::runCommand(kTool + directory.file("indoors.yaml"));
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, AllOf(ContainsRegex("C_ON +0.382070 +from biases"),
+                                   ContainsRegex("C_OFF +-0.106891 +from biases")));
 }
 
 TEST(ContrastFromBiasTool, TakesValuesInPlaceOfTheFiles) {

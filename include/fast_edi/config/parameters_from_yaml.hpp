@@ -45,12 +45,12 @@ struct LoadedParameters {
 /// Reads all parameters. Missing keys take their defaults, except that thresholds need either
 /// `contrast_threshold_on`/`_off` or `biases`; an explicit threshold wins.
 /// \param root a map, or null for an empty one
-/// \param base_directory relative `response_file` paths start here
+/// \param base_directory relative paths of `response_file` and `biases` start here
 /// \throws ParameterError for unknown, misspelt or repeated keys (naming the nearest known key),
 ///         wrong types and values out of range
 LoadedParameters parametersFromYaml(const YAML::Node& root, const std::string& base_directory);
 
-/// Relative `response_file` paths start at the folder of the file.
+/// Relative paths of `response_file` and `biases` start at the folder of the file.
 /// \param overrides see applyOverrides()
 /// \throws ParameterError also when the file cannot be read or parsed (naming file and line)
 LoadedParameters parametersFromFile(const std::string& path,
