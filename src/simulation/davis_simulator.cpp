@@ -6,11 +6,6 @@
 namespace fast_edi {
 namespace {
 
-/// Longest time between two renderings, so that leak and noise keep their order in a still scene.
-constexpr std::int64_t kMaxStepNs = kNanosecondsPerMillisecond;
-/// Renderings per period of a flickering light.
-constexpr double kStepsPerFlicker = 40.0;
-
 const SimulationSettings& validated(const SimulationSettings& settings) {
   settings.validate();
   return settings;
@@ -24,28 +19,19 @@ std::int64_t microseconds(std::int64_t us) {
 
 DavisSimulator::DavisSimulator(const SimulationSettings& settings)
     : settings_(validated(settings)),
-      scene_(settings.scene, settings.sensor.size, settings.sensor.color_filter, settings.seed),
-      motion_(settings.motion, settings.sensor.size, settings.focalLengthPx(), settings.seed),
+      world_(makeWorld(settings)),
       event_sensor_(settings.sensor, settings.seed),
       frame_sensor_(settings.sensor, settings.seed),
+      imu_sensor_(settings.imu, settings.timing.start_ns, settings.seed),
       t_ns_(settings.timing.start_ns) {
-  renderAt(t_ns_, irradiance_);
+  world_->render(t_ns_, irradiance_);
   event_sensor_.begin(t_ns_, irradiance_);
 }
 
-void DavisSimulator::renderAt(std::int64_t t_ns, cv::Mat1f& irradiance) const {
-  scene_.render(motion_.imageToPlaneAt(t_ns - settings_.timing.start_ns), t_ns, irradiance);
-}
-
 std::int64_t DavisSimulator::stepEnd(std::int64_t limit_ns) const {
-  const std::int64_t now = t_ns_ - settings_.timing.start_ns;
-  std::int64_t step = std::min(kMaxStepNs, event_sensor_.maxStepNs());
-  if (settings_.scene.flicker_hz > 0.0) {
-    step =
-        std::min(step, static_cast<std::int64_t>(static_cast<double>(kNanosecondsPerSecond) /
-                                                 (kStepsPerFlicker * settings_.scene.flicker_hz)));
-  }
-  const double speed = motion_.speedPxPerSecond(now);
+  std::int64_t step = std::min(
+      {microseconds(settings_.max_step_us), event_sensor_.maxStepNs(), world_->maxStepNs()});
+  const double speed = world_->speedPxPerSecond(t_ns_);
   if (speed > 0.0) {
     step = static_cast<std::int64_t>(
         std::min(static_cast<double>(step),
@@ -53,7 +39,7 @@ std::int64_t DavisSimulator::stepEnd(std::int64_t limit_ns) const {
   }
   // The speed may rise within the step.
   while (step > kNanosecondsPerMicrosecond &&
-         motion_.displacementPx(now, now + step) > settings_.max_step_px) {
+         world_->displacementPx(t_ns_, t_ns_ + step) > settings_.max_step_px) {
     step = step * 3 / 4;
   }
   step = std::max(kNanosecondsPerMicrosecond, step - step % kNanosecondsPerMicrosecond);
@@ -64,7 +50,7 @@ void DavisSimulator::advanceTo(std::int64_t t_ns, std::vector<Event>& events,
                                cv::Mat1d* light_sum) {
   while (t_ns_ < t_ns) {
     const std::int64_t next = stepEnd(t_ns);
-    renderAt(next, next_irradiance_);
+    world_->render(next, next_irradiance_);
     event_sensor_.advance(next, next_irradiance_, events);
     if (light_sum != nullptr) {
       const double half_step = 0.5 * static_cast<double>(next - t_ns_);
@@ -85,6 +71,7 @@ bool DavisSimulator::next(SimulatedInterval& interval) {
   const TimingSettings& timing = settings_.timing;
   if (frames_taken_ >= timing.frames) return false;
   interval.events.clear();
+  interval.imu.clear();
   interval.start_ns = t_ns_;
   const std::int64_t exposure_start = timing.start_ns + microseconds(timing.lead_us) +
                                       frames_taken_ * microseconds(timing.period_us);
@@ -94,7 +81,8 @@ bool DavisSimulator::next(SimulatedInterval& interval) {
       exposure_start + microseconds(timing.period_us) + (last ? microseconds(timing.lead_us) : 0);
 
   SimulatedFrame& frame = interval.frame;
-  frame.exposure = {exposure_start, exposure_start + microseconds(timing.exposure_us)};
+  frame.exposure = {exposure_start,
+                    exposure_start + microseconds(timing.exposureUs(frames_taken_ - 1))};
   advanceTo(frame.exposure.start_ns, interval.events, nullptr);
   cv::Mat1d light_sum = cv::Mat1d::zeros(settings_.sensor.size.height, settings_.sensor.size.width);
   advanceTo(frame.exposure.end_ns, interval.events, &light_sum);
@@ -105,12 +93,16 @@ bool DavisSimulator::next(SimulatedInterval& interval) {
   frame.sharp = latentAt(middle);
   frame.visible_tags = visibleTagsAt(middle);
   advanceTo(interval.end_ns, interval.events, nullptr);
+  if (const RoomTrajectory* way = trajectory()) {
+    frame.pose = way->poseAt(middle - timing.start_ns);
+    imu_sensor_.advance(interval.end_ns, *way, interval.imu);
+  }
   return true;
 }
 
 cv::Mat1f DavisSimulator::irradianceAt(std::int64_t t_ns) const {
   cv::Mat1f irradiance;
-  renderAt(t_ns, irradiance);
+  world_->render(t_ns, irradiance);
   return irradiance;
 }
 
@@ -119,21 +111,7 @@ cv::Mat DavisSimulator::latentAt(std::int64_t t_ns) const {
 }
 
 std::vector<int> DavisSimulator::visibleTagsAt(std::int64_t t_ns) const {
-  const cv::Matx33d plane_to_image = motion_.imageToPlaneAt(t_ns - settings_.timing.start_ns).inv();
-  const double right = settings_.sensor.size.width - 1;
-  const double bottom = settings_.sensor.size.height - 1;
-  std::vector<int> visible;
-  for (const PlacedTag& tag : scene_.tags()) {
-    const std::array<cv::Point2d, 4> corners = tag.corners(kTagPaperFactor);
-    const bool inside = std::all_of(corners.begin(), corners.end(), [&](const cv::Point2d& corner) {
-      const cv::Vec3d p = plane_to_image * cv::Vec3d(corner.x, corner.y, 1.0);
-      const double x = p[0] / p[2];
-      const double y = p[1] / p[2];
-      return x >= 0.0 && x <= right && y >= 0.0 && y <= bottom;
-    });
-    if (inside) visible.push_back(tag.id);
-  }
-  return visible;
+  return world_->visibleTagsAt(t_ns);
 }
 
 SimulatedSequence simulateSequence(const SimulationSettings& settings) {

@@ -1,6 +1,7 @@
 #include "fast_edi/simulation/simulation_settings.hpp"
 
 #include <array>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -9,9 +10,13 @@ namespace fast_edi {
 namespace {
 
 constexpr double kFocalLengthPerWidth = 0.95;
+/// A wide lens, as visual odometry wants it.
+constexpr double kRoomFocalLengthPerWidth = 0.7;
 constexpr int kMinSide = 16;
 constexpr int kMaxSide = 4096;
 
+constexpr std::array<std::pair<const char*, SceneKind>, 2> kScenes{
+    {{"plane", SceneKind::kPlane}, {"room", SceneKind::kRoom}}};
 constexpr std::array<std::pair<const char*, TextureKind>, 3> kTextures{
     {{"poster", TextureKind::kPoster},
      {"natural", TextureKind::kNatural},
@@ -42,6 +47,29 @@ void checkRange(const char* name, double value, double low, double high) {
   throw std::invalid_argument(message.str());
 }
 
+void checkRoom(const RoomSettings& room) {
+  checkRange("room length [m]", room.length_m, 5.0, 50.0);
+  checkRange("room width [m]", room.width_m, 5.0, 50.0);
+  checkRange("room height [m]", room.height_m, 2.5, 20.0);
+  checkRange("texel [m]", room.texel_m, 1e-3, 0.1);
+  checkRange("poster pixel [m]", room.poster_px_m, 1e-3, 0.1);
+  checkRange("lap [s]", room.lap_s, 10.0, 1e4);
+  checkRange("gentle start [s]", room.gentle_s, 0.0, 1e4);
+  checkRange("shaking [deg rms]", room.shake_rms_deg, 0.0, 10.0);
+  checkRange("shaking [Hz]", room.shake_hz, 0.5, 20.0);
+  checkRange("wander", room.wander, 0.0, 1.5);
+}
+
+void checkImu(const ImuSettings& imu) {
+  checkRange("IMU rate [Hz]", imu.rate_hz, 1.0, 1e4);
+  checkRange("accelerometer noise [m/s^2/sqrt(Hz)]", imu.accelerometer_noise, 0.0, 10.0);
+  checkRange("gyroscope noise [rad/s/sqrt(Hz)]", imu.gyroscope_noise, 0.0, 10.0);
+  checkRange("accelerometer walk [m/s^3/sqrt(Hz)]", imu.accelerometer_walk, 0.0, 10.0);
+  checkRange("gyroscope walk [rad/s^2/sqrt(Hz)]", imu.gyroscope_walk, 0.0, 10.0);
+  checkRange("accelerometer bias [m/s^2]", imu.accelerometer_bias, 0.0, 10.0);
+  checkRange("gyroscope bias [rad/s]", imu.gyroscope_bias, 0.0, 10.0);
+}
+
 }  // namespace
 
 SensorSettings SensorSettings::ideal() {
@@ -61,8 +89,13 @@ SensorSettings SensorSettings::ideal() {
 }
 
 double SimulationSettings::focalLengthPx() const {
-  return motion.focal_length_px > 0.0 ? motion.focal_length_px
-                                      : kFocalLengthPerWidth * sensor.size.width;
+  if (motion.focal_length_px > 0.0) return motion.focal_length_px;
+  return sensor.size.width *
+         (kind == SceneKind::kRoom ? kRoomFocalLengthPerWidth : kFocalLengthPerWidth);
+}
+
+std::int64_t SimulationSettings::lengthNs() const {
+  return (2 * timing.lead_us + timing.frames * timing.period_us) * kNanosecondsPerMicrosecond;
 }
 
 void SimulationSettings::validate() const {
@@ -104,12 +137,37 @@ void SimulationSettings::validate() const {
   checkRange("period [us]", static_cast<double>(timing.period_us), 100.0, 1e7);
   checkRange("exposure [us]", static_cast<double>(timing.exposure_us), 1.0,
              static_cast<double>(timing.period_us));
+  checkRange("exposure swing [relative]", timing.exposure_swing, 0.0, 0.9);
+  checkRange("longest exposure [us]",
+             static_cast<double>(timing.exposure_us) * (1.0 + timing.exposure_swing), 1.0,
+             static_cast<double>(timing.period_us));
   checkRange("lead [us]", static_cast<double>(timing.lead_us), 0.0, 1e7);
   if (timing.start_ns < 0 || timing.start_ns % kNanosecondsPerMicrosecond != 0) {
     throw std::invalid_argument("start [ns]: expected a multiple of 1000, at least 0, got " +
                                 std::to_string(timing.start_ns));
   }
   checkRange("motion per step [px]", max_step_px, 0.01, 1.0);
+  checkRange("time per step [us]", static_cast<double>(max_step_us), 1.0, 1e5);
+  if (kind == SceneKind::kRoom) {
+    checkRoom(room);
+    checkImu(imu);
+    checkRange("tags in the room", scene.tags, 0, 0);
+    checkRange("flicker frequency in the room [Hz]", scene.flicker_hz, 0.0, 0.0);
+    if (sensor.color_filter != ColorFilter::kNone) {
+      throw std::invalid_argument("room: expected a sensor without colour filter");
+    }
+  }
+}
+
+SceneKind sceneKindFromName(const std::string& name) {
+  return fromName("scene", name, kScenes);
+}
+
+std::int64_t TimingSettings::exposureUs(int i) const {
+  constexpr double kFramesPerSwing = 7.0;
+  constexpr double kTurn_rad = 6.283185307179586;
+  const double swing = exposure_swing * std::sin(kTurn_rad * i / kFramesPerSwing);
+  return static_cast<std::int64_t>(static_cast<double>(exposure_us) * (1.0 + swing));
 }
 
 TextureKind textureKindFromName(const std::string& name) {

@@ -1,8 +1,8 @@
 /// \file
-/// A simulated DAVIS looking at a textured plane from a moving camera: events, blurry frames and
-/// the truth about both.
+/// A simulated DAVIS moving before a textured plane or through a room: events, blurry frames and
+/// the truth about both; in the room also an inertial sensor and true poses.
 ///
-/// The plane is rendered at sub-steps that follow the motion (SimulationSettings::max_step_px). The
+/// The scene is rendered at sub-steps that follow the motion (SimulationSettings::max_step_px). The
 /// same renderings drive the events and are summed, by the trapezoidal rule, into the frame: it is
 /// the integral over its half-open exposure interval [start, end).
 ///
@@ -10,16 +10,19 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include <opencv2/core.hpp>
 
 #include "fast_edi/core/types.hpp"
-#include "fast_edi/simulation/camera_motion.hpp"
 #include "fast_edi/simulation/event_sensor.hpp"
 #include "fast_edi/simulation/frame_sensor.hpp"
-#include "fast_edi/simulation/scene.hpp"
+#include "fast_edi/simulation/imu_sensor.hpp"
+#include "fast_edi/simulation/room_trajectory.hpp"
 #include "fast_edi/simulation/simulation_settings.hpp"
+#include "fast_edi/simulation/world.hpp"
 
 namespace fast_edi {
 
@@ -28,13 +31,15 @@ struct SimulatedFrame {
   cv::Mat blurry;                 ///< as the camera delivers it: CV_8UC1 or CV_16UC1
   cv::Mat sharp;                  ///< truth at mid-exposure, free of noise, same type
   std::vector<int> visible_tags;  ///< ids of tags wholly in view at mid-exposure
+  std::optional<RigidPose> pose;  ///< of the camera at mid-exposure; in the room alone
 };
 
 /// A stretch of the recording: the exposure of one frame and the time until the next one begins.
 struct SimulatedInterval {
   std::int64_t start_ns = 0;
   std::int64_t end_ns = 0;
-  std::vector<Event> events;  ///< with start < t <= end before rounding down to the clock, sorted
+  std::vector<Event> events;   ///< with start < t <= end before rounding down to the clock, sorted
+  std::vector<ImuSample> imu;  ///< with start <= t <= end, none twice; in the room alone
   SimulatedFrame frame;
 };
 
@@ -61,21 +66,20 @@ class DavisSimulator {
   std::vector<int> visibleTagsAt(std::int64_t t_ns) const;
 
   const SimulationSettings& settings() const { return settings_; }
-  const Scene& scene() const { return scene_; }
-  const CameraMotion& motion() const { return motion_; }
+  /// The camera's way through the room; null before the plane.
+  const RoomTrajectory* trajectory() const { return world_->trajectory(); }
   /// For the true thresholds.
   const EventSensor& eventSensor() const { return event_sensor_; }
 
  private:
   std::int64_t stepEnd(std::int64_t limit_ns) const;
-  void renderAt(std::int64_t t_ns, cv::Mat1f& irradiance) const;
   void advanceTo(std::int64_t t_ns, std::vector<Event>& events, cv::Mat1d* light_sum);
 
   SimulationSettings settings_;
-  Scene scene_;
-  CameraMotion motion_;
+  std::unique_ptr<const World> world_;
   EventSensor event_sensor_;
   FrameSensor frame_sensor_;
+  ImuSensor imu_sensor_;
   int frames_taken_ = 0;
   std::int64_t t_ns_ = 0;
   cv::Mat1f irradiance_;       ///< at t_ns_

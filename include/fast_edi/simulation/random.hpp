@@ -21,6 +21,9 @@ enum class RandomStream : std::uint32_t {
   kHotPixels,
   kShotNoise,
   kFrameNoise,
+  kRoom,
+  kRoomMotion,
+  kImu,
 };
 
 /// An engine for one purpose; equal arguments give equal sequences.

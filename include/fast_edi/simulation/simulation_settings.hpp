@@ -45,7 +45,7 @@ struct SceneSettings {
 struct MotionSettings {
   MotionKind kind = MotionKind::kShake;
   double scale = 1.0;            ///< factor on all amplitudes, hence on all speeds
-  double focal_length_px = 0.0;  ///< 0 = 0.95 x the sensor's width [px]
+  double focal_length_px = 0.0;  ///< 0 = 0.95 (room: 0.7) x the sensor's width [px]
 };
 
 /// How colours reach the pixels.
@@ -93,22 +93,71 @@ struct TimingSettings {
   int frames = 30;
   std::int64_t period_us = 40'000;
   std::int64_t exposure_us = 20'000;  ///< at most the period
+  double exposure_swing = 0.0;    ///< up and down by this part, as automatic exposure does, 0..1
   std::int64_t lead_us = 20'000;  ///< events before the first exposure and after the last period
+
+  /// Exposure time of frame \p i.
+  std::int64_t exposureUs(int i) const;
+};
+
+/// What the camera moves in.
+enum class SceneKind {
+  kPlane,  ///< before one textured plane, by MotionSettings
+  kRoom,   ///< through a furnished room, by RoomSettings; with poses and an inertial sensor
+};
+
+/// A box-shaped room with posters on all sides, in which pillars and low boxes stand, and a
+/// hand-held camera's way through it. SceneSettings give its textures (one poster for each face),
+/// lens and light; its walls are grey: tags, flicker and colour filters belong to the plane.
+///
+/// World frame: right-handed, z up, the origin in the middle of the floor.
+struct RoomSettings {
+  double length_m = 7.0;       ///< along x
+  double width_m = 6.0;        ///< along y
+  double height_m = 3.0;       ///< along z
+  double texel_m = 0.003;      ///< finest structure of the textures
+  double poster_px_m = 0.010;  ///< size of what is one pixel to a texture of the plane
+  double lap_s = 25.0;         ///< about the time of one lap; the recording holds whole laps
+  double gentle_s = 3.0;       ///< at the start and the end: walking without shaking
+  double shake_rms_deg = 2.2;  ///< of the rotation about the image's x and y axes, each
+  double shake_hz = 4.5;       ///< mean frequency of the shaking
+  double wander = 1.0;         ///< factor on walking's own movements, translation and rotation
+};
+
+/// An inertial sensor in the camera's optical frame (x right, y down, z forward), its origin in the
+/// camera's optical centre. Its noise is white, its biases are random walks from a drawn start.
+struct ImuSettings {
+  double rate_hz = 400.0;
+  double accelerometer_noise = 4e-3;  ///< density [m/s^2/sqrt(Hz)]
+  double gyroscope_noise = 2e-4;      ///< density [rad/s/sqrt(Hz)]
+  double accelerometer_walk = 2e-4;   ///< of the bias [m/s^3/sqrt(Hz)]
+  double gyroscope_walk = 1e-5;       ///< of the bias [rad/s^2/sqrt(Hz)]
+  double accelerometer_bias = 0.05;   ///< at the start, standard deviation by axis [m/s^2]
+  double gyroscope_bias = 5e-3;       ///< at the start, standard deviation by axis [rad/s]
 };
 
 struct SimulationSettings {
+  SceneKind kind = SceneKind::kPlane;
+  RoomSettings room;  ///< with kRoom
+  ImuSettings imu;    ///< with kRoom
   SceneSettings scene;
   MotionSettings motion;
   SensorSettings sensor;
   TimingSettings timing;
   std::uint64_t seed = 1;
   double max_step_px = 0.25;  ///< motion between two renderings is kept below this [px]
+  /// Longest time between two renderings, so that leak and noise keep their order in a still scene.
+  std::int64_t max_step_us = 1000;
 
   double focalLengthPx() const;
+  /// From the first to the last instant simulated.
+  std::int64_t lengthNs() const;
   /// \throws std::invalid_argument naming the first value out of range and what is allowed
   void validate() const;
 };
 
+/// \throws std::invalid_argument listing the names that are known
+SceneKind sceneKindFromName(const std::string& name);
 /// \throws std::invalid_argument listing the names that are known
 TextureKind textureKindFromName(const std::string& name);
 /// \throws std::invalid_argument listing the names that are known
