@@ -49,8 +49,6 @@ DeblurNode::DeblurNode(const ros::NodeHandle& nh, const ros::NodeHandle& private
   configure();
   if (deblurrer_) {
     advertise();
-    advance_timer_ = nh_.createSteadyTimer(
-        kAdvancePeriod, [this](const ros::SteadyTimerEvent&) { advanceClock(); }, false, false);
     if (!parameters_.ros.lazy) {
       inputs_ = subscribe();
     }
@@ -60,12 +58,18 @@ DeblurNode::DeblurNode(const ros::NodeHandle& nh, const ros::NodeHandle& private
 }
 
 DeblurNode::~DeblurNode() {
+  std::unique_ptr<Inputs> ended;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    closing_ = true;
+    ended = std::move(inputs_);
+  }
+  // Each of these waits for callbacks at work, which may wait for the mutex.
+  ended.reset();
   report_timer_.stop();
-  advance_timer_.stop();
   deblurred_publisher_.shutdown();
   comparison_publisher_.shutdown();
   latent_publisher_.shutdown();
-  inputs_.reset();
 }
 
 void DeblurNode::configure() {
@@ -136,14 +140,15 @@ std::unique_ptr<DeblurNode::Inputs> DeblurNode::subscribe() {
   totals_.listening_since_ns = steadyNow();
   totals_.last_frame_ns = 0;
   totals_.last_events_ns = 0;
-  advance_timer_.start();
+  inputs->advance_timer = nh_.createSteadyTimer(
+      kAdvancePeriod, [this](const ros::SteadyTimerEvent&) { advanceClock(); });
   return inputs;
 }
 
 void DeblurNode::subscribersChanged() {
   std::unique_ptr<Inputs> ended;  // destroyed after the mutex is released
   guarded([this, &ended] {
-    if (!parameters_.ros.lazy) {
+    if (closing_ || !parameters_.ros.lazy) {
       return;
     }
     const bool wanted = deblurred_publisher_.getNumSubscribers() > 0 ||
@@ -153,7 +158,6 @@ void DeblurNode::subscribersChanged() {
       inputs_ = subscribe();
     } else if (!wanted && inputs_) {
       ended = std::move(inputs_);
-      advance_timer_.stop();
       deblurrer_->pause();
       comparison_.clear();
     }
@@ -176,9 +180,18 @@ void DeblurNode::guarded(Work&& work) {
   }
 }
 
+template <typename Work>
+void DeblurNode::whileListening(Work&& work) {
+  guarded([&] {
+    if (inputs_) {
+      work();
+    }
+  });
+}
+
 void DeblurNode::receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                                std::int64_t decoding_since_ns) {
-  guarded([&] {
+  whileListening([&] {
     // What the array cost before this callback belongs to the latency of the frame it completes.
     callback_start_ns_ = decoding_since_ns > 0 ? decoding_since_ns : callback_start_ns_;
     totals_.last_events_ns = callback_start_ns_;
@@ -192,7 +205,7 @@ void DeblurNode::receiveEvents(const WireEvents& events, SensorSize size, std::u
 }
 
 void DeblurNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
-  guarded([&] {
+  whileListening([&] {
     totals_.last_frame_ns = callback_start_ns_;
     const ImageReading reading = readImage(*message);
     if (reading.verdict == ImageVerdict::kMalformed) {
@@ -208,15 +221,15 @@ void DeblurNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
 }
 
 void DeblurNode::receiveCameraInfo(const sensor_msgs::CameraInfoConstPtr& message) {
-  guarded([&] { sink_->setCameraInfo(message); });
+  whileListening([&] { sink_->setCameraInfo(message); });
 }
 
 void DeblurNode::receiveExposure(const std_msgs::Int32ConstPtr& message) {
-  guarded([&] { deblurrer_->addExposure(message->data, callback_start_ns_); });
+  whileListening([&] { deblurrer_->addExposure(message->data, callback_start_ns_); });
 }
 
 void DeblurNode::receiveBiasUpdate(const dynamic_reconfigure::ConfigConstPtr& message) {
-  guarded([&] {
+  whileListening([&] {
     try {
       const auto thresholds = thresholdsAfterBiasUpdate(parameters_, *message);
       if (!thresholds || *thresholds == deblurrer_->parameters().thresholds) {
@@ -239,7 +252,7 @@ void DeblurNode::receiveBiasUpdate(const dynamic_reconfigure::ConfigConstPtr& me
 }
 
 void DeblurNode::advanceClock() {
-  guarded([&] { deblurrer_->advance(callback_start_ns_); });
+  whileListening([&] { deblurrer_->advance(callback_start_ns_); });
 }
 
 void DeblurNode::deliver(const sensor_msgs::ImagePtr& image, const sensor_msgs::CameraInfoPtr& info,

@@ -33,12 +33,40 @@ EventSubscription::EventSubscription(const ros::NodeHandle& nh, const std::strin
   subscribeToWire();
 }
 
+EventSubscription::~EventSubscription() {
+  ros::Subscriber last;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ended_ = true;
+    std::swap(last, subscriber_);
+  }
+  last.shutdown();  // waits, without the mutex that the callback may be waiting for
+}
+
+bool EventSubscription::takesPointers() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return takes_pointers_;
+}
+
+/// Ends the subscription before. In a callback of that one, this must be the last thing done: the
+/// destructor no longer waits for it then.
+void EventSubscription::replaceBy(ros::Subscriber next, bool takes_pointers) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!ended_) {
+      std::swap(next, subscriber_);
+      takes_pointers_ = takes_pointers;
+    }
+  }
+  next.shutdown();
+}
+
 void EventSubscription::subscribeToWire() {
-  takes_pointers_ = false;
   const boost::function<void(const ros::MessageEvent<const EventArray>&)> callback =
       [this](const ros::MessageEvent<const EventArray>& event) { receive(event); };
-  subscriber_ = nh_.subscribe<EventArray>(topic_, queue_size_, callback, ros::VoidConstPtr(),
-                                          ros::TransportHints().tcpNoDelay());
+  replaceBy(nh_.subscribe<EventArray>(topic_, queue_size_, callback, ros::VoidConstPtr(),
+                                      ros::TransportHints().tcpNoDelay()),
+            false);
 }
 
 void EventSubscription::receive(const ros::MessageEvent<const EventArray>& event) {
@@ -46,26 +74,24 @@ void EventSubscription::receive(const ros::MessageEvent<const EventArray>& event
   handler_(array.events(), sensorSize(array), array.header.seq, array.decodingSince());
 #ifdef FAST_EDI_HAVE_DVS_MSGS
   if (event.getPublisherName() == ros::this_node::getName()) {
-    const SensorSize size = sensorSize(array);
     const std::uint32_t beyond_a_hole = array.header.seq + 2;
-    // The array, and with it this subscription's callback, must not be touched any more afterwards.
+    handler_({}, sensorSize(array), beyond_a_hole, 0);
     subscribeToPointers();
-    handler_({}, size, beyond_a_hole, 0);
   }
 #endif
 }
 
 #ifdef FAST_EDI_HAVE_DVS_MSGS
 void EventSubscription::subscribeToPointers() {
-  takes_pointers_ = true;
   const boost::function<void(const dvs_msgs::EventArray::ConstPtr&)> callback =
       [this](const dvs_msgs::EventArray::ConstPtr& array) {
         const std::int64_t since_ns = steadyNow();
         handler_(packGeneratedEvents(array->events, records_), sensorSize(*array),
                  array->header.seq, since_ns);
       };
-  subscriber_ = nh_.subscribe<dvs_msgs::EventArray>(
-      topic_, queue_size_, callback, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+  replaceBy(nh_.subscribe<dvs_msgs::EventArray>(topic_, queue_size_, callback, ros::VoidConstPtr(),
+                                                ros::TransportHints().tcpNoDelay()),
+            true);
 }
 #endif
 

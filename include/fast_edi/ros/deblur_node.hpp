@@ -29,11 +29,23 @@
 
 namespace fast_edi {
 
-/// Threads. The node handles' callback queue must call one callback at a time (a nodelet's
-/// getNodeHandle(), ros::spin()), because events, frames and exposures have to be handled in the
-/// order of their arrival. One mutex serialises the callbacks besides, since that queue already
-/// runs in another thread while the constructor is still at work. Subscriptions are ended without
-/// holding it: ending one waits for its callback, which may be waiting for the mutex.
+/// Threads. Callbacks come from the node handles' callback queue. Events, frames and exposures have
+/// to be handled in the order of their arrival, so that queue must call one callback at a time: a
+/// nodelet's getNodeHandle() whatever the number of the manager's worker threads, or ros::spin(). A
+/// queue that calls several at once does no harm beyond that order.
+///
+/// mutex_ guards all members that callbacks use: everything from sink_ on, parameters_ and
+/// closing_. Each callback holds it from beginning to end. It is needed even with a queue as above,
+/// which runs already while the constructor is at work, and still while the destructor is.
+///
+/// Order of locks: mutex_ first, then any lock inside ROS (publishing, subscribing, diagnostics).
+/// The other way round would be to hold mutex_ while waiting for a callback to end, which may be
+/// waiting for mutex_. So what waits for callbacks (ending subscriptions, timers and publishers) is
+/// done without holding it.
+///
+/// Closing. First the inputs and the clock end, then the report, then the publishers: at no time
+/// can a callback meet a publisher that is gone. Subscribers that come and go meanwhile find
+/// closing_ set.
 ///
 /// No exception leaves a callback: one that gets here is logged, reported and the pipeline starts
 /// anew.
@@ -51,8 +63,9 @@ class DeblurNode {
   const std::string& configurationError() const { return configuration_error_; }
 
  private:
-  /// Input subscriptions, which come and go together.
+  /// Input subscriptions and the clock, which come and go together.
   struct Inputs {
+    ros::SteadyTimer advance_timer;
     image_transport::Subscriber image;
     ros::Subscriber camera_info;
     ros::Subscriber exposure;
@@ -83,6 +96,9 @@ class DeblurNode {
   /// Runs a callback's work under the mutex.
   template <typename Work>
   void guarded(Work&& work);
+  /// The same for what comes from the inputs; nothing once they have ended.
+  template <typename Work>
+  void whileListening(Work&& work);
 
   ros::NodeHandle nh_;
   ros::NodeHandle private_nh_;
@@ -92,6 +108,7 @@ class DeblurNode {
   LoadedParameters parameters_;
 
   std::mutex mutex_;
+  bool closing_ = false;  ///< the destructor is at work
   std::optional<MessageFrameSink> sink_;
   std::unique_ptr<Deblurrer> deblurrer_;  ///< null when idle for good
   ComparisonView comparison_;
@@ -106,7 +123,6 @@ class DeblurNode {
   image_transport::Publisher comparison_publisher_;
   image_transport::Publisher latent_publisher_;  ///< empty when `latent_images` is 0
   std::optional<diagnostic_updater::Updater> updater_;
-  ros::SteadyTimer advance_timer_;
   ros::SteadyTimer report_timer_;
   std::unique_ptr<Inputs> inputs_;  ///< null while nobody listens
 };

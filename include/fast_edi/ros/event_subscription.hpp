@@ -15,6 +15,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -40,25 +41,32 @@ class EventSubscription {
   /// \param handler called from \p nh's callback queue
   EventSubscription(const ros::NodeHandle& nh, const std::string& topic, std::uint32_t queue_size,
                     Handler handler);
-  ~EventSubscription() = default;
+  /// Waits for a callback at work to end.
+  ~EventSubscription();
   EventSubscription(const EventSubscription&) = delete;
   EventSubscription& operator=(const EventSubscription&) = delete;
 
   /// True while arrays are taken as pointers to the generated type.
-  bool takesPointers() const { return takes_pointers_; }
+  bool takesPointers() const;
 
  private:
   void receive(const ros::MessageEvent<const EventArray>& event);
   void subscribeToWire();
   void subscribeToPointers();
+  void replaceBy(ros::Subscriber next, bool takes_pointers);
 
   ros::NodeHandle nh_;
   std::string topic_;
   std::uint32_t queue_size_;
   Handler handler_;
-  bool takes_pointers_ = false;
   std::vector<std::uint8_t> records_;  ///< packed events of the array at hand
-  ros::Subscriber subscriber_;         ///< last: its callbacks use the members above
+
+  /// Guards what is below: a callback may replace the subscription while another thread ends it.
+  /// Held only to read or exchange them, never while calling ROS.
+  mutable std::mutex mutex_;
+  bool ended_ = false;
+  bool takes_pointers_ = false;
+  ros::Subscriber subscriber_;
 };
 
 }  // namespace fast_edi
