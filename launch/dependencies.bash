@@ -24,7 +24,7 @@ FAST_EDI_DEBIAN_RUN=(
   python3-diagnostic-msgs python3-dynamic-reconfigure rosbash opencv-data
 )
 FAST_EDI_DEBIAN_TEST=(
-  python3-rostest libgtest-dev libgmock-dev catkin-lint clang-tidy clang-format libxml2-utils
+  python3-rostest libgtest-dev libgmock-dev catkin-lint clang-tidy clang-format doxygen libxml2-utils
   shellcheck
 )
 
@@ -41,7 +41,7 @@ FAST_EDI_NOETIC_RUN=(
   ros-noetic-roslaunch ros-noetic-rostopic ros-noetic-rosbash ros-noetic-diagnostic-msgs
 )
 FAST_EDI_NOETIC_TEST=(
-  ros-noetic-rostest libgtest-dev libgmock-dev python3-catkin-lint clang-tidy clang-format
+  ros-noetic-rostest libgtest-dev libgmock-dev python3-catkin-lint clang-tidy clang-format doxygen
   libxml2-utils shellcheck
 )
 

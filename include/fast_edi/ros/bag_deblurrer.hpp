@@ -46,8 +46,8 @@ class BagDeblurrer {
   using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
   using OutputHandler = std::function<void(const BagPipeline::Output& output)>;
 
-  /// \param reader, writer must outlive this object
-  /// \param writer null: no bag is written
+  /// \param reader must outlive this object
+  /// \param writer must outlive this object; null: no bag is written
   /// \throws std::invalid_argument for parameters out of range
   BagDeblurrer(BagReader& reader, BagWriter* writer, const TopicNames& topics,
                const LoadedParameters& parameters, Progress progress);
@@ -57,7 +57,7 @@ class BagDeblurrer {
 
   /// Copies every message and adds the deblurred frames, each behind the message that completed it
   /// and with the same record time. At the end of the bag waiting frames are closed with what has
-  /// come. Latent images that `latent_images` asks for are written as <image ns>/latent/image_raw.
+  /// come. Latent images that `latent_images` asks for are written to TopicNames::outputLatent().
   /// Does not close the writer.
   /// \throws BagError when the output cannot be written
   BagDeblurReport run();
