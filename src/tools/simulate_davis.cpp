@@ -13,6 +13,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
@@ -25,6 +26,7 @@
 #include "fast_edi/ros/bag_writer.hpp"
 #include "fast_edi/ros/event_array.hpp"
 #include "fast_edi/simulation/davis_simulator.hpp"
+#include "fast_edi/simulation/recording_faults.hpp"
 
 namespace {
 
@@ -60,6 +62,7 @@ struct RecordingOptions {
   bool exposure_topic = true;
   bool camera_info_topic = true;
   bool ground_truth_topic = true;
+  fast_edi::RecordingFaults faults;
 };
 
 ros::Time rosTime(std::int64_t t_ns) {
@@ -74,18 +77,24 @@ class Recording {
   Recording(const RecordingOptions& options, const DavisSimulator& simulator)
       : options_(options),
         writer_(options.path, "", options.compression, options.overwrite),
-        array_end_ns_(simulator.settings().timing.start_ns) {
+        timing_(simulator.settings().timing),
+        faulty_(options.faults, simulator.settings().sensor.size, timing_),
+        array_end_ns_(timing_.start_ns) {
     const SimulationSettings& settings = simulator.settings();
-    array_.width = static_cast<std::uint32_t>(settings.sensor.size.width);
-    array_.height = static_cast<std::uint32_t>(settings.sensor.size.height);
+    const std::int64_t wrong_px = options_.faults.event_size;
+    array_.width = static_cast<std::uint32_t>(settings.sensor.size.width + wrong_px);
+    array_.height = static_cast<std::uint32_t>(settings.sensor.size.height + wrong_px);
     camera_info_ = makeCameraInfo(settings);
     array_end_ns_ += options_.array_length_us * kNanosecondsPerMicrosecond;
   }
 
   void add(const SimulatedInterval& interval) {
     addFrame(interval.frame);
-    for (const Event& event : interval.events) {
+    std::vector<Event> events = interval.events;
+    faulty_.apply(interval.frame.exposure, events);
+    for (Event& event : events) {
       if (event.t_ns >= array_end_ns_) closeArraysUntil(event.t_ns);
+      event.t_ns = faulty_.eventStamp(event.t_ns);
       if (events_in_array_ == 0) array_.header.stamp = rosTime(event.t_ns);
       array_.append(event);
       ++events_in_array_;
@@ -127,12 +136,17 @@ class Recording {
     } else if (options_.encoding == encodings::BGR8) {
       cv::cvtColor(raw, pixels, cv::COLOR_BayerBG2BGR);
     }
+    if (options_.faults.more_rows > 0 && inSecondHalf()) {
+      cv::copyMakeBorder(pixels, pixels, 0, static_cast<int>(options_.faults.more_rows), 0, 0,
+                         cv::BORDER_REPLICATE);
+    }
     sensor_msgs::Image image;
     image.header.seq = frames_;
     image.header.stamp = rosTime(stamp_ns);
     image.width = static_cast<std::uint32_t>(pixels.cols);
     image.height = static_cast<std::uint32_t>(pixels.rows);
-    image.encoding = options_.encoding;
+    image.encoding =
+        options_.faults.unknown_encoding != 0 ? encodings::TYPE_32FC1 : options_.encoding;
     image.is_bigendian = 0;
     image.step = static_cast<std::uint32_t>(pixels.cols * pixels.elemSize());
     // Freshly made matrices are without padding.
@@ -140,27 +154,52 @@ class Recording {
     return image;
   }
 
+  bool inSecondHalf() const { return static_cast<int>(frames_) >= timing_.frames / 2; }
+  /// How many messages since the middle of the recording are to be lost.
+  bool isLost(std::int64_t lost, std::int64_t since_middle) const {
+    return since_middle >= 0 && since_middle < lost;
+  }
+
   void addFrame(const SimulatedFrame& frame) {
     const std::int64_t time_ns = frame.exposure.end_ns + kFrameReadoutNs;
-    enqueue("/image_raw", time_ns, makeImage(frame.blurry, frame.exposure.at(options_.stamp)));
+    const bool repeats =
+        options_.faults.repeated_stamp != 0 && static_cast<int>(frames_) == timing_.frames / 2;
+    if (!repeats) frame_stamp_ns_ = faulty_.frameStamp(frame.exposure.at(options_.stamp));
+    const std::int64_t since_middle = static_cast<std::int64_t>(frames_) - timing_.frames / 2;
+    if (!isLost(options_.faults.dropped_images, since_middle)) {
+      enqueue("/image_raw", time_ns, makeImage(frame.blurry, frame_stamp_ns_));
+    }
     if (options_.ground_truth_topic) {
       enqueue("/ground_truth/image_raw", time_ns,
-              makeImage(frame.sharp, frame.exposure.at(ExposureInstant::kMid)));
+              makeImage(frame.sharp, faulty_.frameStamp(frame.exposure.at(ExposureInstant::kMid))));
     }
-    if (options_.exposure_topic) {
-      std_msgs::Int32 exposure;
-      exposure.data =
-          static_cast<std::int32_t>(frame.exposure.length() / kNanosecondsPerMicrosecond);
-      enqueue("/exposure", time_ns + kExposureMessageDelayNs, exposure);
-    }
+    addExposure(frame, time_ns + kExposureMessageDelayNs);
     ++frames_;
+  }
+
+  void addExposure(const SimulatedFrame& frame, std::int64_t time_ns) {
+    const fast_edi::RecordingFaults& faults = options_.faults;
+    const bool lost = faults.dropped_exposures > 0 && frames_ % faults.dropped_exposures == 1;
+    if (!options_.exposure_topic || lost) return;
+    std::int64_t exposure_us = frame.exposure.length() / kNanosecondsPerMicrosecond;
+    if (faults.exposure_of_next != 0) {
+      exposure_us = timing_.exposureUs(static_cast<int>(frames_) + 1);
+    }
+    if (faults.exposure_percent > 0) exposure_us = exposure_us * faults.exposure_percent / 100;
+    std_msgs::Int32 exposure;
+    exposure.data = static_cast<std::int32_t>(exposure_us);
+    enqueue("/exposure", time_ns, exposure);
   }
 
   /// A scene without events gives no arrays.
   void closeArray() {
     if (events_in_array_ == 0) return;
     array_.header.seq = arrays_++;
-    enqueue("/events", array_end_ns_ + kArrayDelayNs, array_);
+    if (array_end_ns_ > faulty_.middle() && lost_arrays_ < options_.faults.dropped_arrays) {
+      ++lost_arrays_;
+    } else {
+      enqueue("/events", array_end_ns_ + kArrayDelayNs, array_);
+    }
     if (options_.camera_info_topic) {
       enqueue("/camera_info", array_end_ns_ + kArrayDelayNs, camera_info_);
     }
@@ -193,7 +232,11 @@ class Recording {
   fast_edi::BagWriter writer_;
   sensor_msgs::CameraInfo camera_info_;
   EventArray array_;
+  fast_edi::TimingSettings timing_;
+  fast_edi::FaultyStream faulty_;
   std::int64_t array_end_ns_;
+  std::int64_t frame_stamp_ns_ = 0;  ///< of the last frame
+  std::int64_t lost_arrays_ = 0;
   std::uint64_t events_in_array_ = 0;
   std::uint32_t arrays_ = 0;
   std::uint32_t frames_ = 0;
@@ -260,6 +303,15 @@ void addOption(po::options_description& group, const char* name, Value& target,
                       po::value<Value>()->value_name("X")->notifier(
                           [&target](const Value& value) { target = value; }),
                       text.str().c_str());
+}
+
+std::string describeFaults() {
+  std::ostringstream text;
+  text << "a fault to plant, may be repeated; X changes its strength. One of:";
+  for (const fast_edi::FaultDescription& fault : fast_edi::faultDescriptions()) {
+    text << "\n" << fault.name << "=" << fault.usual << ": " << fault.meaning;
+  }
+  return text.str();
 }
 
 /// One line on the terminal, redrawn.
@@ -341,6 +393,8 @@ int run(int argc, char** argv) {
   addOption(timing, "frames", settings.timing.frames, "number of frames");
   addOption(timing, "period-us", settings.timing.period_us, "from frame to frame [us]");
   addOption(timing, "exposure-us", settings.timing.exposure_us, "exposure time [us]");
+  addOption(timing, "exposure-swing", settings.timing.exposure_swing,
+            "exposure times go up and down by this part, as with automatic exposure, 0..0.9");
   addOption(timing, "lead-us", settings.timing.lead_us,
             "events before the first exposure and after the last period [us]");
   addOption(timing, "start-ns", settings.timing.start_ns, "sensor time at the start [ns]");
@@ -376,11 +430,15 @@ int run(int argc, char** argv) {
   addOption(pixels, "electrons-per-dn", settings.sensor.electrons_per_dn,
             "frames: shot noise, 0 = none");
 
+  po::options_description faults("Faults, for trying out validate_bag");
+  faults.add_options()("fault", po::value<std::vector<std::string>>()->value_name("NAME[=X]"),
+                       describeFaults().c_str());
+
   po::options_description all(
       "simulate_davis --out PATH [options]\n"
       "Simulates a DAVIS moving over a textured plane and writes events, blurry frames, exposure\n"
       "times and true sharp frames (at mid-exposure) as davis_ros_driver would have recorded them");
-  all.add(output).add(scene).add(timing).add(pixels);
+  all.add(output).add(scene).add(timing).add(pixels).add(faults);
 
   po::variables_map values;
   po::store(po::command_line_parser(argc, argv).options(all).run(), values);
@@ -396,6 +454,11 @@ int run(int argc, char** argv) {
   po::notify(values);
   applyEncoding(options.encoding, settings.sensor);
   options.stamp = stampFromName(stamp);
+  if (values.count("fault") != 0) {
+    for (const std::string& fault : values["fault"].as<std::vector<std::string>>()) {
+      fast_edi::plantFault(fault, options.faults);
+    }
+  }
   options.overwrite = values.count("overwrite") != 0;
   options.exposure_topic = values.count("no-exposure") == 0;
   options.camera_info_topic = values.count("no-camera-info") == 0;
