@@ -15,6 +15,7 @@ FAST_EDI_DEBIAN_BUILD=(
   g++ make cmake catkin
   libroscpp-dev libroslib-dev libnodeletlib-dev libcv-bridge-dev libimage-transport-dev librosbag-dev
   libdynamic-reconfigure-config-init-mutex-dev libdiagnostic-updater-dev
+  libgeometry-msgs-dev libnav-msgs-dev
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
   libapriltag-dev libbz2-dev liblz4-dev
   libdlib-dev libblas-dev liblapack-dev libsvm-dev
@@ -33,6 +34,7 @@ FAST_EDI_NOETIC_BUILD=(
   g++ make cmake ros-noetic-catkin
   ros-noetic-roscpp ros-noetic-roslib ros-noetic-nodelet ros-noetic-cv-bridge ros-noetic-image-transport
   ros-noetic-rosbag ros-noetic-dynamic-reconfigure ros-noetic-diagnostic-updater
+  ros-noetic-geometry-msgs ros-noetic-nav-msgs
   ros-noetic-pluginlib ros-noetic-sensor-msgs ros-noetic-std-msgs ros-noetic-apriltag
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
   libbz2-dev liblz4-dev libdlib-dev libblas-dev liblapack-dev libsvm-dev
