@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
@@ -15,8 +16,10 @@
 #include <string>
 #include <vector>
 
+#include <geometry_msgs/PoseStamped.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
+#include <sensor_msgs/Imu.h>
 #include <sensor_msgs/distortion_models.h>
 #include <sensor_msgs/image_encodings.h>
 #include <std_msgs/Int32.h>
@@ -49,6 +52,10 @@ namespace po = boost::program_options;
 constexpr std::int64_t kFrameReadoutNs = 5 * kNanosecondsPerMillisecond;
 constexpr std::int64_t kExposureMessageDelayNs = 100 * kNanosecondsPerMicrosecond;
 constexpr std::int64_t kArrayDelayNs = kNanosecondsPerMillisecond;
+constexpr std::int64_t kImuDelayNs = kNanosecondsPerMillisecond;
+
+constexpr const char* kWorldFrame = "world";
+constexpr const char* kImuFrame = "imu";
 
 /// How the recording is laid down in messages.
 struct RecordingOptions {
@@ -71,6 +78,42 @@ ros::Time rosTime(std::int64_t t_ns) {
   return time;
 }
 
+geometry_msgs::PoseStamped makePose(const fast_edi::RigidPose& pose, std::int64_t stamp_ns) {
+  geometry_msgs::PoseStamped message;
+  message.header.stamp = rosTime(stamp_ns);
+  message.header.frame_id = kWorldFrame;
+  message.pose.position.x = pose.position.x();
+  message.pose.position.y = pose.position.y();
+  message.pose.position.z = pose.position.z();
+  message.pose.orientation.x = pose.orientation.x();
+  message.pose.orientation.y = pose.orientation.y();
+  message.pose.orientation.z = pose.orientation.z();
+  message.pose.orientation.w = pose.orientation.w();
+  return message;
+}
+
+/// Without orientation, which such a sensor does not measure (REP 145).
+sensor_msgs::Imu makeImu(const fast_edi::ImuSample& sample, const fast_edi::ImuSettings& settings) {
+  sensor_msgs::Imu message;
+  message.header.stamp = rosTime(sample.t_ns);
+  message.header.frame_id = kImuFrame;
+  message.orientation_covariance[0] = -1.0;
+  message.angular_velocity.x = sample.angular_velocity.x();
+  message.angular_velocity.y = sample.angular_velocity.y();
+  message.angular_velocity.z = sample.angular_velocity.z();
+  message.linear_acceleration.x = sample.linear_acceleration.x();
+  message.linear_acceleration.y = sample.linear_acceleration.y();
+  message.linear_acceleration.z = sample.linear_acceleration.z();
+  constexpr std::size_t kDiagonal = 4;
+  for (std::size_t i = 0; i < message.angular_velocity_covariance.size(); i += kDiagonal) {
+    message.angular_velocity_covariance[i] =
+        settings.rate_hz * settings.gyroscope_noise * settings.gyroscope_noise;
+    message.linear_acceleration_covariance[i] =
+        settings.rate_hz * settings.accelerometer_noise * settings.accelerometer_noise;
+  }
+  return message;
+}
+
 /// Lays a simulation down in messages, in the order of their record times.
 class Recording {
  public:
@@ -85,11 +128,15 @@ class Recording {
     array_.width = static_cast<std::uint32_t>(settings.sensor.size.width + wrong_px);
     array_.height = static_cast<std::uint32_t>(settings.sensor.size.height + wrong_px);
     camera_info_ = makeCameraInfo(settings);
+    imu_settings_ = settings.imu;
     array_end_ns_ += options_.array_length_us * kNanosecondsPerMicrosecond;
   }
 
   void add(const SimulatedInterval& interval) {
     addFrame(interval.frame);
+    for (const fast_edi::ImuSample& sample : interval.imu) {
+      enqueue("/imu", sample.t_ns + kImuDelayNs, makeImu(sample, imu_settings_));
+    }
     std::vector<Event> events = interval.events;
     faulty_.apply(interval.frame.exposure, events);
     for (Event& event : events) {
@@ -172,6 +219,10 @@ class Recording {
     if (options_.ground_truth_topic) {
       enqueue("/ground_truth/image_raw", time_ns,
               makeImage(frame.sharp, faulty_.frameStamp(frame.exposure.at(ExposureInstant::kMid))));
+      if (frame.pose) {
+        const std::int64_t middle_ns = frame.exposure.at(ExposureInstant::kMid);
+        enqueue("/ground_truth/pose", time_ns, makePose(*frame.pose, middle_ns));
+      }
     }
     addExposure(frame, time_ns + kExposureMessageDelayNs);
     ++frames_;
@@ -231,6 +282,7 @@ class Recording {
   RecordingOptions options_;
   fast_edi::BagWriter writer_;
   sensor_msgs::CameraInfo camera_info_;
+  fast_edi::ImuSettings imu_settings_;
   EventArray array_;
   fast_edi::TimingSettings timing_;
   fast_edi::FaultyStream faulty_;
@@ -262,6 +314,20 @@ void applyNoisePreset(const std::string& name, SensorSettings& sensor) {
     throw std::invalid_argument("--noise: expected none, typical or strong, got \"" + name + "\"");
   }
   sensor.size = size;
+}
+
+/// Dim light makes up for a long exposure. Whole settings, in the place of the plane's defaults.
+void applyRoomPreset(SimulationSettings& settings) {
+  settings.kind = fast_edi::SceneKind::kRoom;
+  settings.max_step_px = 1.0;
+  settings.max_step_us = 2000;
+  settings.scene.density = 0.9;
+  settings.scene.illumination = 0.3;
+  settings.sensor.white_dn /= settings.scene.illumination;
+  settings.timing.frames = 1200;
+  settings.timing.period_us = 50'000;
+  settings.timing.exposure_us = 40'000;
+  settings.timing.lead_us = 100'000;
 }
 
 void applySensorName(const std::string& name, SensorSettings& sensor) {
@@ -351,11 +417,13 @@ void simulate(const SimulationSettings& settings, const RecordingOptions& option
 int run(int argc, char** argv) {
   SimulationSettings settings;
   RecordingOptions options;
+  std::string scene_name = "plane";
   std::string sensor = "davis346";
   std::string noise = "typical";
   std::string texture = "poster";
   std::string motion = "shake";
   std::string stamp = "mid";
+  double duration_s = 0.0;
 
   po::options_description output("Recording");
   output.add_options()("help,h", "print this text");
@@ -373,6 +441,9 @@ int run(int argc, char** argv) {
   output.add_options()("no-ground-truth", "leave out the true sharp frames");
 
   po::options_description scene("Scene");
+  addOption(scene, "scene", scene_name,
+            "plane, or room: with IMU and true poses; presets --density 0.9 --illumination 0.3 "
+            "--white-dn 717 --frames 1200 --period-us 50000 --exposure-us 40000 --lead-us 100000");
   addOption(scene, "seed", settings.seed, "equal seeds give equal bags");
   addOption(scene, "texture", texture,
             "poster, natural, flat, or a picture: anything with a '.' or '/' in it is a path");
@@ -387,10 +458,11 @@ int run(int argc, char** argv) {
   addOption(scene, "motion", motion, "still, mild, pan, spin or shake");
   addOption(scene, "motion-scale", settings.motion.scale, "factor on all amplitudes and speeds");
   addOption(scene, "focal-length-px", settings.motion.focal_length_px,
-            "focal length [px], 0 = 0.95 x width");
+            "focal length [px], 0 = 0.95 x width (room: 0.7 x width)");
 
   po::options_description timing("Timing");
   addOption(timing, "frames", settings.timing.frames, "number of frames");
+  addOption(timing, "duration", duration_s, "frames for so long, instead of --frames [s]");
   addOption(timing, "period-us", settings.timing.period_us, "from frame to frame [us]");
   addOption(timing, "exposure-us", settings.timing.exposure_us, "exposure time [us]");
   addOption(timing, "exposure-swing", settings.timing.exposure_swing,
@@ -398,6 +470,28 @@ int run(int argc, char** argv) {
   addOption(timing, "lead-us", settings.timing.lead_us,
             "events before the first exposure and after the last period [us]");
   addOption(timing, "start-ns", settings.timing.start_ns, "sensor time at the start [ns]");
+
+  po::options_description room("Room");
+  addOption(room, "room-length", settings.room.length_m, "along x [m]");
+  addOption(room, "room-width", settings.room.width_m, "along y [m]");
+  addOption(room, "room-height", settings.room.height_m, "[m]");
+  addOption(room, "texel-m", settings.room.texel_m, "finest structure of the textures [m]");
+  addOption(room, "lap-s", settings.room.lap_s,
+            "about the time of a lap; whole laps are made, none in less than half of it [s]");
+  addOption(room, "gentle-s", settings.room.gentle_s, "without shaking, at each end [s]");
+  addOption(room, "shake-deg", settings.room.shake_rms_deg, "shaking, rms about each axis [deg]");
+  addOption(room, "shake-hz", settings.room.shake_hz, "its mean frequency [Hz]");
+  addOption(room, "wander", settings.room.wander, "factor on the walking about");
+  addOption(room, "imu-rate", settings.imu.rate_hz, "[Hz]");
+  addOption(room, "accelerometer-noise", settings.imu.accelerometer_noise, "[m/s^2/sqrt(Hz)]");
+  addOption(room, "gyroscope-noise", settings.imu.gyroscope_noise, "[rad/s/sqrt(Hz)]");
+  addOption(room, "accelerometer-walk", settings.imu.accelerometer_walk,
+            "of the bias [m/s^3/sqrt(Hz)]");
+  addOption(room, "gyroscope-walk", settings.imu.gyroscope_walk, "of the bias [rad/s^2/sqrt(Hz)]");
+  addOption(room, "accelerometer-bias", settings.imu.accelerometer_bias,
+            "standard deviation of its first value [m/s^2]");
+  addOption(room, "gyroscope-bias", settings.imu.gyroscope_bias,
+            "standard deviation of its first value [rad/s]");
 
   po::options_description pixels("Sensor");
   addOption(pixels, "sensor", sensor, "davis346 (346 x 260) or davis240c (240 x 180)");
@@ -437,8 +531,13 @@ int run(int argc, char** argv) {
   po::options_description all(
       "simulate_davis --out PATH [options]\n"
       "Simulates a DAVIS moving over a textured plane and writes events, blurry frames, exposure\n"
-      "times and true sharp frames (at mid-exposure) as davis_ros_driver would have recorded them");
-  all.add(output).add(scene).add(timing).add(pixels).add(faults);
+      "times and true sharp frames (at mid-exposure) as davis_ros_driver would have recorded "
+      "them.\n"
+      "In a room also IMU readings and true poses: world with z up, camera and IMU at one place "
+      "in\n"
+      "the optical frame (x right, y down, z forward), with the same pose at the start and the "
+      "end");
+  all.add(output).add(scene).add(timing).add(room).add(pixels).add(faults);
 
   po::variables_map values;
   po::store(po::command_line_parser(argc, argv).options(all).run(), values);
@@ -451,7 +550,23 @@ int run(int argc, char** argv) {
   if (values.count("sensor") != 0) sensor = values["sensor"].as<std::string>();
   applyNoisePreset(noise, settings.sensor);
   applySensorName(sensor, settings.sensor);
+  if (values.count("scene") != 0) scene_name = values["scene"].as<std::string>();
+  if (fast_edi::sceneKindFromName(scene_name) == fast_edi::SceneKind::kRoom) {
+    applyRoomPreset(settings);
+  }
   po::notify(values);
+  if (values.count("duration") != 0) {
+    if (values.count("frames") != 0) {
+      throw std::invalid_argument("--duration: expected without --frames");
+    }
+    constexpr double kLongestS = 1e5;
+    if (!(duration_s > 0.0 && duration_s <= kLongestS)) {
+      throw std::invalid_argument("--duration: expected more than 0 and at most 100000 s, got " +
+                                  std::to_string(duration_s));
+    }
+    settings.timing.frames = static_cast<int>(
+        std::lround(duration_s * 1e6 / static_cast<double>(settings.timing.period_us)));
+  }
   applyEncoding(options.encoding, settings.sensor);
   options.stamp = stampFromName(stamp);
   if (values.count("fault") != 0) {
