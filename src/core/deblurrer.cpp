@@ -32,6 +32,15 @@ PixelEventLists::Limits limitsOf(const DeblurParameters& parameters) {
           parameters.max_forward_jump_ns};
 }
 
+/// Whether what was learned from the recording under \p a is what would be learned under \p b.
+bool learnAlike(const DeblurParameters& a, const DeblurParameters& b) {
+  return a.thresholds == b.thresholds && a.weighting == b.weighting && a.response == b.response &&
+         a.time_offset_ns == b.time_offset_ns && a.stamp_reference == b.stamp_reference &&
+         a.exposure_source == b.exposure_source && a.exposure_time_ns == b.exposure_time_ns &&
+         a.filter.enabled == b.filter.enabled && a.refine_contrast == b.refine_contrast &&
+         a.refine_delay == b.refine_delay;
+}
+
 void copyImage(const ImageView& in, const MutableImageView& out) {
   if (in.data == nullptr || out.data == nullptr) {
     return;  // an unsupported frame: its pixels are the sink's own matter
@@ -233,9 +242,16 @@ void Deblurrer::Impl::pause() {
 void Deblurrer::Impl::setParameters(const DeblurParameters& parameters) {
   validate(parameters);
   const bool source_changes = parameters.exposure_source != parameters_.exposure_source;
+  if (!learnAlike(parameters, requested_)) {
+    calibration_.reset();
+  }
   requested_ = parameters;
   parameters_ = parameters;
-  calibration_.reset();
+  if (calibration_) {
+    const Calibration& learned = calibration_->inForce();
+    parameters_.thresholds = learned.thresholds;
+    parameters_.time_offset_ns += learned.event_delay_ns;
+  }
   events_.setLimits(limitsOf(parameters_));
   pairing_.setTimeout(parameters_.close_timeout_ns);
   if (source_changes) {

@@ -58,11 +58,12 @@ struct Recording {
   std::vector<Event> events;
 };
 
-Recording makeRecording(Random& random, std::int64_t start_ns, int frames) {
+Recording makeRecording(Random& random, std::int64_t start_ns, int frames,
+                        std::int64_t max_exposure_us = 30'000) {
   Recording recording;
   constexpr std::int64_t kPeriod = 40 * kMs;
   for (int i = 0; i < frames; ++i) {
-    const auto length_us = static_cast<std::int32_t>(uniform(random, 1'000, 30'000));
+    const auto length_us = static_cast<std::int32_t>(uniform(random, 1'000, max_exposure_us));
     const std::int64_t end_ns = start_ns + (i + 1) * kPeriod - uniform(random, 0, 50) * kUs;
     const std::int64_t begin_ns = end_ns - length_us * kUs;
     const std::int64_t stamp_ns = begin_ns + length_us / 2 * kUs;
@@ -351,6 +352,125 @@ TEST(DeblurrerSchedule, ItsPromisesHoldWhateverComes) {
   for (const auto& [reason, count] : passed) {
     EXPECT_GT(count, 0u) << toString(static_cast<PassReason>(reason));
   }
+}
+
+/// Everything that may change from frame to frame, at random. Windows of consecutive frames are far
+/// enough apart for all of it: none reaches back to before the start of the one before.
+DeblurParameters anyParameters(Random& random) {
+  DeblurParameters parameters;
+  parameters.refine_contrast = false;  // what is learned depends on the frames before
+  parameters.refine_delay = false;
+  parameters.thresholds = {0.1 * static_cast<double>(uniform(random, 1, 5)),
+                           0.1 * static_cast<double>(uniform(random, 1, 5))};
+  parameters.weighting = chance(random, 70) ? Weighting::kTime : Weighting::kCounter;
+  parameters.reference = static_cast<ExposureInstant>(uniform(random, 0, 2));
+  parameters.stamp_reference = static_cast<ExposureInstant>(uniform(random, 0, 2));
+  parameters.exposure_source =
+      chance(random, 60) ? ExposureSource::kTopic : ExposureSource::kParameter;
+  parameters.exposure_time_ns = uniform(random, 1, 15) * kMs;
+  parameters.time_offset_ns = uniform(random, -2'000, 2'000) * kUs;
+  parameters.close_timeout_ns = uniform(random, 50, 200) * kMs;
+  parameters.filter.enabled = chance(random, 70);
+  parameters.filter.gain.despeckle = chance(random, 50);
+  parameters.filter.gain.smooth = chance(random, 50);
+  parameters.filter.frame_noise = chance(random, 50);
+  parameters.filter.frame_noise_dn = static_cast<double>(uniform(random, 1, 5));
+  parameters.passthrough = chance(random, 15);
+  return parameters;
+}
+
+/// Outputs by the frame that they are of.
+std::map<const void*, testing::RecordedFrame> byFrame(const testing::RecordingSink& sink) {
+  std::map<const void*, testing::RecordedFrame> outputs;
+  for (const testing::RecordedFrame& output : sink.outputs) {
+    outputs.emplace(output.frame.input.owner.get(), output);
+  }
+  return outputs;
+}
+
+std::map<const void*, testing::RecordedFrame> deblurredAfresh(const DeblurParameters& parameters,
+                                                              const std::vector<Arrival>& run) {
+  testing::RecordingSink sink;
+  Deblurrer deblurrer(parameters, sink);
+  for (const Arrival& arrival : run) {
+    arrival.deliver(deblurrer, arrival.now_ns);
+  }
+  deblurrer.finish();
+  return byFrame(sink);
+}
+
+TEST(DeblurrerSchedule, AfterAChangeOfParametersFramesAreThoseOfAFreshPipeline) {
+  std::uint64_t deblurred = 0;
+  std::uint64_t waiting = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const Recording recording = makeRecording(random, kZero, 12, 15'000);
+    std::vector<Arrival> frames, exposures;
+    for (const auto& shot : recording.shots) {
+      frames.push_back(frameArrival(shot));
+      exposures.push_back(exposureArrival(shot));
+    }
+    const std::vector<Arrival> run =
+        merge({eventArrivals(recording.events, random, uniform(random, 1, 20) * kMs, 1), frames,
+               exposures},
+              random);
+    const auto isExposure = [&exposures](const Arrival& arrival) {
+      return std::any_of(exposures.begin(), exposures.end(), [&arrival](const Arrival& exposure) {
+        return exposure.now_ns == arrival.now_ns;
+      });
+    };
+
+    DeblurParameters parameters = anyParameters(random);
+    testing::RecordingSink sink;
+    Deblurrer deblurrer(parameters, sink);
+    auto expected = deblurredAfresh(parameters, run);
+    std::int64_t changed_ns = INT64_MIN;
+    std::int64_t source_changed_ns = INT64_MIN;
+    std::size_t checked = 0;
+    const auto checkNew = [&] {
+      for (; checked < sink.outputs.size(); ++checked) {
+        const testing::RecordedFrame& output = sink.outputs[checked];
+        const auto shot = std::find_if(recording.shots.begin(), recording.shots.end(),
+                                       [&output](const Recording::Shot& candidate) {
+                                         return candidate.frame.owner == output.frame.input.owner;
+                                       });
+        const bool waited = shot->readout_ns < changed_ns;
+        // How long a frame was exposed that was there before, the old source alone has said.
+        if (shot->readout_ns < source_changed_ns) {
+          continue;
+        }
+        ASSERT_EQ(expected.count(shot->frame.owner.get()), 1u);
+        EXPECT_TRUE(output == expected.at(shot->frame.owner.get())) << "output " << checked;
+        deblurred += output.frame.deblurred && changed_ns != INT64_MIN ? 1 : 0;
+        waiting += output.frame.deblurred && waited ? 1 : 0;
+      }
+    };
+    for (const Arrival& arrival : run) {
+      // Not between an image and its message, which then would be taken for that of the next.
+      if (chance(random, 12) && !isExposure(arrival)) {
+        const DeblurParameters before = parameters;
+        parameters = anyParameters(random);
+        deblurrer.setParameters(parameters);
+        expected = deblurredAfresh(parameters, run);
+        changed_ns = arrival.now_ns;
+        if (parameters.exposure_source != before.exposure_source) {
+          source_changed_ns = changed_ns;
+        }
+      }
+      arrival.deliver(deblurrer, arrival.now_ns);
+      checkNew();
+      if (HasFatalFailure()) {
+        return;
+      }
+    }
+    deblurrer.finish();
+    checkNew();
+    EXPECT_EQ(sink.outputs.size(), recording.shots.size());
+  }
+  // The runs reached what they are meant to reach.
+  EXPECT_GT(deblurred, 200u);
+  EXPECT_GT(waiting, 5u);
 }
 
 TEST(DeblurrerSchedule, TheSameCallsGiveTheSameImages) {

@@ -45,6 +45,11 @@ class CameraResponse {
   /// \throws std::runtime_error naming file, line and rule
   static CameraResponse fromFile(const std::string& path);
 
+  /// Tables are the same when one is a copy of the other.
+  friend bool operator==(const CameraResponse& a, const CameraResponse& b) {
+    return a.offset_dn_ == b.offset_dn_ && a.tables_ == b.tables_;
+  }
+
   bool isLinear() const { return tables_ == nullptr; }
   double offsetDn() const { return offset_dn_; }
 

@@ -66,7 +66,20 @@ class Deblurrer {
   /// for the time nobody listened. The next events start up anew.
   void pause();
 
-  /// Takes over new parameters for frames closed from now on.
+  /// Takes over new parameters between two frames. Frames closed from now on, those that wait
+  /// included, are those of a fresh object with the new parameters, bit for bit, as far as events
+  /// are still there: a window moved back to before the last frame's start has lost its own. Two
+  /// things that have come before matter nevertheless:
+  /// - What was learned from the recording stays as long as what it was learned under does. It is
+  ///   forgotten, and learning starts anew from the values given, when the thresholds, the time
+  ///   offset, weighting, response, the place of exposures (stamp_reference, exposure_source,
+  ///   exposure_time), filter.enabled or what to learn changes.
+  /// - Output stamps go on increasing: a frame that another `reference` would place at or before
+  ///   the last output is suppressed.
+  /// Frames whose exposure message is awaited stop waiting when exposure_source changes.
+  ///
+  /// No event is lost, except that new limits (max_buffered_events, max_backward_jump,
+  /// max_forward_jump) empty the lists.
   /// \throws std::invalid_argument and keeps the old ones when one is out of range
   void setParameters(const DeblurParameters& parameters);
   const DeblurParameters& parameters() const;
