@@ -17,7 +17,7 @@ FAST_EDI_DEBIAN_BUILD=(
   libdynamic-reconfigure-config-init-mutex-dev libdiagnostic-updater-dev
   libgeometry-msgs-dev libnav-msgs-dev
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
-  libapriltag-dev libbz2-dev liblz4-dev
+  libvisualization-msgs-dev libapriltag-dev libbz2-dev liblz4-dev
   libdlib-dev libblas-dev liblapack-dev libsvm-dev
 )
 FAST_EDI_DEBIAN_RUN=(
@@ -35,7 +35,7 @@ FAST_EDI_NOETIC_BUILD=(
   ros-noetic-roscpp ros-noetic-roslib ros-noetic-nodelet ros-noetic-cv-bridge ros-noetic-image-transport
   ros-noetic-rosbag ros-noetic-dynamic-reconfigure ros-noetic-diagnostic-updater
   ros-noetic-geometry-msgs ros-noetic-nav-msgs
-  ros-noetic-pluginlib ros-noetic-sensor-msgs ros-noetic-std-msgs ros-noetic-apriltag
+  ros-noetic-pluginlib ros-noetic-sensor-msgs ros-noetic-std-msgs ros-noetic-visualization-msgs ros-noetic-apriltag
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
   libbz2-dev liblz4-dev libdlib-dev libblas-dev liblapack-dev libsvm-dev
 )

@@ -27,13 +27,13 @@
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/evaluation/comparison_sheet.hpp"
 #include "fast_edi/evaluation/image_metrics.hpp"
-#include "fast_edi/evaluation/tag_count.hpp"
 #include "fast_edi/ros/bag_deserialise.hpp"
 #include "fast_edi/ros/bag_pipeline.hpp"
 #include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/comparison_view.hpp"
 #include "fast_edi/ros/event_array.hpp"
 #include "fast_edi/ros/topic_names.hpp"
+#include "fast_edi/tags/tag_detector.hpp"
 
 namespace fast_edi {
 namespace {

@@ -10,10 +10,10 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "fast_edi/evaluation/tag_count.hpp"
 #include "fast_edi/simulation/april_tags.hpp"
 #include "fast_edi/simulation/camera_motion.hpp"
 #include "fast_edi/simulation/davis_simulator.hpp"
+#include "fast_edi/tags/tag_detector.hpp"
 
 namespace fast_edi {
 namespace {
@@ -43,15 +43,15 @@ TEST_P(TagSceneTest, AllTagsAreReadWhereTheyWerePlaced) {
     const PlacedTag& tag = scene.tags()[i];
     EXPECT_EQ(found[i].id, tag.id);
     EXPECT_EQ(found[i].hamming, 0);
-    // libapriltag counts from the top left corner of the top left pixel.
-    const cv::Point2d expected = tag.center + 0.5 * cv::Point2d(346, 260);
+    const cv::Point2d expected = tag.center + 0.5 * cv::Point2d(345, 259);
     EXPECT_LT(cv::norm(found[i].center - expected), 0.3);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Textures, TagSceneTest,
                          testing::Values(TextureKind::kPoster, TextureKind::kNatural,
-                                         TextureKind::kFlat));
+                                         TextureKind::kFlat, TextureKind::kMosaic,
+                                         TextureKind::kPage));
 
 TEST(SceneTest, TexturesDifferInTheirContrast) {
   const auto contrast = [](TextureKind kind) {
@@ -68,6 +68,8 @@ TEST(SceneTest, TexturesDifferInTheirContrast) {
   EXPECT_LT(contrast(TextureKind::kFlat), 0.1);
   EXPECT_GT(contrast(TextureKind::kPoster), 0.2);
   EXPECT_GT(contrast(TextureKind::kNatural), 0.5);
+  EXPECT_GT(contrast(TextureKind::kMosaic), 0.5);
+  EXPECT_GT(contrast(TextureKind::kPage), 0.3);
 }
 
 TEST(SceneTest, IlluminationScalesIrradiance) {

@@ -13,7 +13,7 @@
 #include "fast_edi/evaluation/brisque.hpp"
 #include "fast_edi/evaluation/feature_matches.hpp"
 #include "fast_edi/evaluation/sseq.hpp"
-#include "fast_edi/evaluation/tag_count.hpp"
+#include "fast_edi/tags/tag_detector.hpp"
 
 namespace fast_edi {
 
