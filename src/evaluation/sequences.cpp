@@ -31,9 +31,9 @@ constexpr std::array<NamedScene, 6> kScenes = {{
     {"poster-strong", true, TextureKind::kPoster, 0.6, 6, MotionKind::kShake, kBright, 30'000},
     {"poster-mild-dim", true, TextureKind::kPoster, 0.6, 6, MotionKind::kMild, kDim, 25'000},
     {"sparse-sweep", true, TextureKind::kPoster, 0.1, 2, MotionKind::kPan, kBright, 25'000},
-    {"leaves-strong-dim", false, TextureKind::kNatural, 0.0, 6, MotionKind::kShake, kDim, 30'000},
-    {"leaves-mild", false, TextureKind::kNatural, 0.0, 6, MotionKind::kMild, kBright, 20'000},
-    {"flat-spin", false, TextureKind::kFlat, 0.0, 2, MotionKind::kSpin, kBright, 20'000},
+    {"mosaic-strong-dim", false, TextureKind::kMosaic, 0.0, 6, MotionKind::kShake, kDim, 30'000},
+    {"mosaic-mild", false, TextureKind::kMosaic, 0.0, 6, MotionKind::kMild, kBright, 20'000},
+    {"page-spin", false, TextureKind::kPage, 0.0, 2, MotionKind::kSpin, kBright, 20'000},
 }};
 
 SimulationSettings settingsOf(const NamedScene& scene, int frames, std::uint64_t seed) {

@@ -17,10 +17,12 @@ constexpr int kMaxSide = 4096;
 
 constexpr std::array<std::pair<const char*, SceneKind>, 2> kScenes{
     {{"plane", SceneKind::kPlane}, {"room", SceneKind::kRoom}}};
-constexpr std::array<std::pair<const char*, TextureKind>, 3> kTextures{
+constexpr std::array<std::pair<const char*, TextureKind>, 5> kTextures{
     {{"poster", TextureKind::kPoster},
      {"natural", TextureKind::kNatural},
-     {"flat", TextureKind::kFlat}}};
+     {"flat", TextureKind::kFlat},
+     {"mosaic", TextureKind::kMosaic},
+     {"page", TextureKind::kPage}}};
 constexpr std::array<std::pair<const char*, MotionKind>, 5> kMotions{
     {{"still", MotionKind::kStill},
      {"mild", MotionKind::kMild},

@@ -4,61 +4,13 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <boost/random/normal_distribution.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "texture_brushes.hpp"
+
 namespace fast_edi {
 namespace {
-
-using Color = cv::Scalar;
-
-double uniform(RandomEngine& random, double low, double high) {
-  return boost::random::uniform_real_distribution<double>(low, high)(random);
-}
-
-int uniformInt(RandomEngine& random, int low, int high) {
-  return boost::random::uniform_int_distribution<int>(low, high)(random);
-}
-
-/// A colour of given luminance and random, soft hue.
-Color tinted(RandomEngine& random, double luminance, double saturation) {
-  const double hue = uniform(random, 0.0, 2.0 * CV_PI);
-  Color color;
-  for (int channel = 0; channel < 3; ++channel) {
-    color[channel] = luminance * (1.0 + saturation * std::cos(hue + 2.0 * CV_PI / 3.0 * channel));
-  }
-  return color;
-}
-
-/// 1/f noise: octaves of interpolated random numbers, each half as strong as the next coarser one.
-/// \param coarsest size of the coarsest structure [canvas elements]
-cv::Mat1f fractalNoise(cv::Size size, double coarsest, double finest, RandomEngine& random) {
-  boost::random::normal_distribution<float> normal;
-  cv::Mat1f sum = cv::Mat1f::zeros(size);
-  double amplitude = 1.0;
-  for (double cell = coarsest; cell >= finest; cell *= 0.5, amplitude *= 0.5) {
-    cv::Mat1f grid(static_cast<int>(size.height / cell) + 3,
-                   static_cast<int>(size.width / cell) + 3);
-    for (float& value : grid) value = normal(random);
-    cv::Mat1f octave;
-    cv::resize(grid, octave, size, 0.0, 0.0, cv::INTER_CUBIC);
-    sum += amplitude * octave;
-  }
-  return sum;
-}
-
-/// Multiplies all channels by exp(strength * noise).
-void shade(const cv::Mat1f& noise, double strength, cv::Mat3f& canvas) {
-  cv::Mat1f factor;
-  cv::exp(noise * strength, factor);
-  cv::Mat channels[] = {factor, factor, factor};
-  cv::Mat factors;
-  cv::merge(channels, 3, factors);
-  cv::multiply(canvas, factors, canvas);
-}
 
 void fillPolygon(cv::Mat3f& canvas, const std::vector<cv::Point2d>& corners, const Color& color) {
   std::vector<cv::Point> points;
@@ -375,6 +327,12 @@ cv::Mat3f drawTexture(TextureKind kind, cv::Size size_px, double scale, double d
       break;
     case TextureKind::kFlat:
       drawFlat(canvas, scale, random);
+      break;
+    case TextureKind::kMosaic:
+      drawMosaic(canvas, scale, random);
+      break;
+    case TextureKind::kPage:
+      drawPage(canvas, scale, random);
       break;
   }
   return canvas;

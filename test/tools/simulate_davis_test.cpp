@@ -243,7 +243,7 @@ TEST_F(SimulateDavisTool, RefusesWhatItCannotDo) {
       {"--encoding yuv422", "--encoding: expected mono8, mono16"},
       {"--stamp noon", "--stamp: expected start, mid or end, got \"noon\""},
       {"--noise loud", "--noise: expected none, typical or strong"},
-      {"--texture velvet", "texture: expected one of poster, natural, flat, got \"velvet\""},
+      {"--texture velvet", "texture: expected one of poster, natural, flat, mosaic, page, got \"velvet\""},
       {"--threshold-on 0", "ON threshold [natural log]: expected 0.01 to 10, got 0"},
       {"--array-us 0", "--array-us: expected more than 0"},
       {"--frmes 3", "unrecognised option '--frmes'"},

@@ -1,6 +1,6 @@
 /// \file
 /// The fixed set of simulated sequences on which methods are compared. Scenes, noise and mismatch
-/// were fixed before anything was tuned and must not change with a method.
+/// must not change with a method.
 ///
 /// Six scenes, each with two seeds (seeds draw texture, path, thresholds and noise anew):
 ///
@@ -9,12 +9,12 @@
 /// | poster-strong       | rich         | strong | bright | yes |
 /// | poster-mild-dim     | rich         | mild   | dim    | yes |
 /// | sparse-sweep        | nearly empty | strong | bright | yes |
-/// | leaves-strong-dim   | rich         | strong | dim    | no  |
-/// | leaves-mild         | rich         | mild   | bright | no  |
-/// | flat-spin           | flat         | strong | bright | no  |
+/// | mosaic-strong-dim   | rich         | strong | dim    | no  |
+/// | mosaic-mild         | rich         | mild   | bright | no  |
+/// | page-spin           | dark on calm | strong | bright | no  |
 ///
-/// Textures of the second half (dead leaves; slow shading) are of kinds that the first half does
-/// not contain. All of them: a DAVIS346 with libcaer's biases, threshold mismatch 8 %, refractory
+/// Textures of the second half (stones with joints; a printed page) are of kinds on which nothing
+/// was tuned. All of them: a DAVIS346 with libcaer's biases, threshold mismatch 8 %, refractory
 /// period 3.4 us, leak 0.1 Hz, shot noise 0.5 (bright) to 5 Hz (dark), photoreceptor 300 (bright)
 /// to 30 Hz (dark), frames every 40 ms with 1.5 DN read noise and shot noise. Exposures last 20 to
 /// 30 ms. Dim: a quarter of the light at twice the gain, 2 DN read noise.

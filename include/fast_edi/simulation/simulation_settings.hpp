@@ -18,6 +18,8 @@ enum class TextureKind {
   kPoster,   ///< a brick wall with stickers: stars, rings, letters, shaded balls; edges and calm
   kNatural,  ///< dead leaves: overlapping shapes of power-law size with 1/f shading; many events
   kFlat,     ///< almost nothing to see: slow shading of a few percent
+  kMosaic,   ///< stones of random grey with thin dark joints: corners and fine lines everywhere
+  kPage,     ///< a printed page: dark letters on bright paper, ruled boxes
 };
 
 /// Camera motions over the plane, all smooth and bounded.
