@@ -1,6 +1,7 @@
 #include "fast_edi/tags/tag_pose.hpp"
 
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
@@ -66,6 +67,21 @@ TEST(TagPoseTest, FollowsFromTheCorners) {
   const CameraModel camera = davisCamera();
   const auto pose = estimateTagPose(projectedCorners(knownPose(), camera), kSide_m, camera);
   expectPose(pose, knownPose(), 1e-6, 1e-5);
+}
+
+TEST(TagPoseTest, HoldsForEachTurnOfTheTag) {
+  const CameraModel camera = davisCamera();
+  for (int degrees = -180; degrees <= 180; degrees += 15) {
+    for (const double tilt_rad : {0.0, 0.4}) {
+      TagPose turned = knownPose();
+      turned.orientation = Eigen::AngleAxisd(tilt_rad, Eigen::Vector3d::UnitY()) *
+                           Eigen::AngleAxisd(degrees * M_PI / 180.0, Eigen::Vector3d::UnitZ()) *
+                           Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX());
+      SCOPED_TRACE(std::to_string(degrees) + " degrees, tilt " + std::to_string(tilt_rad));
+      expectPose(estimateTagPose(projectedCorners(turned, camera), kSide_m, camera), turned, 1e-4,
+                 1e-3);
+    }
+  }
 }
 
 TEST(TagPoseTest, DistortionIsTakenOut) {
