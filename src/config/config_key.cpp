@@ -118,6 +118,7 @@ ConfigKey numberKey(const KeyText& text, NumberRange range,
                     std::function<void(double, ParameterDraft&)> store) {
   ConfigKey key;
   key.description = {text.name, "number", text.unit, range.text(), text.default_value, text.doc};
+  key.description.limits = NumberLimits{range.min, range.max};
   const std::string what =
       "a number " + range.text() + (text.unit.empty() ? "" : " [" + text.unit + "]");
   key.read = [range, what, store = std::move(store)](const YAML::Node& node,
@@ -136,6 +137,7 @@ ConfigKey integerKey(const KeyText& text, NumberRange range,
                      std::function<void(std::int64_t, ParameterDraft&)> store) {
   ConfigKey key;
   key.description = {text.name, "integer", text.unit, range.text(), text.default_value, text.doc};
+  key.description.limits = NumberLimits{range.min, range.max};
   const std::string what =
       "an integer " + range.text() + (text.unit.empty() ? "" : " [" + text.unit + "]");
   key.read = [range, what, store = std::move(store)](const YAML::Node& node,

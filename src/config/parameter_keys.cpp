@@ -1,5 +1,6 @@
 #include "parameter_keys.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -77,7 +78,9 @@ ConfigKey instantKey(const std::string& name, InstantMember member, const std::s
 ConfigKey thresholdKey(const std::string& name, double ContrastThresholds::*member,
                        const std::string& polarity) {
   return numberKey({name, "natural log", "from `biases`",
-                    "contrast threshold of " + polarity + " events; overrides `biases`"},
+                    "contrast threshold of " + polarity +
+                        " events; overrides `biases`. Changed live, 0 stands "
+                        "for the one from `biases`"},
                    kContrast, [member](double value, ParameterDraft& draft) {
                      draft.loaded.deblur.thresholds.*member = value;
                    });
@@ -122,6 +125,12 @@ ConfigKey latentImagesKey() {
       kLatentImages, [](std::int64_t value, ParameterDraft& draft) {
         draft.loaded.deblur.latent.per_exposure = static_cast<int>(value);
       });
+}
+
+/// A key whose value Deblurrer::setParameters() takes over from one frame to the next.
+ConfigKey live(ConfigKey key) {
+  key.description.live = true;
+  return key;
 }
 
 /// What goes beyond plain EDI: one switch for all of it, then piece by piece.
@@ -190,22 +199,23 @@ ConfigKey biasesKey() {
 
 std::vector<ConfigKey> buildTopLevelKeys() {
   std::vector<ConfigKey> keys = {
-      thresholdKey("contrast_threshold_on", &ContrastThresholds::on, "ON"),
-      thresholdKey("contrast_threshold_off", &ContrastThresholds::off, "OFF"),
+      live(thresholdKey("contrast_threshold_on", &ContrastThresholds::on, "ON")),
+      live(thresholdKey("contrast_threshold_off", &ContrastThresholds::off, "OFF")),
       biasesKey(),
       weightingKey(),
-      instantKey("reference", &DeblurParameters::reference,
-                 "instant of the exposure that the latent image shows"),
-      instantKey("stamp_reference", &DeblurParameters::stamp_reference,
-                 "instant of the exposure that the stamp of an input image means"),
-      exposureSourceKey(),
-      timeKey("exposure_time_us", "us", kNanosecondsPerMicrosecond, kExposureUs,
-              &DeblurParameters::exposure_time_ns, "exposure time; 0 = not known"),
-      timeKey("time_offset_us", "us", kNanosecondsPerMicrosecond, kTimeOffsetUs,
-              &DeblurParameters::time_offset_ns, "clock of the events minus clock of the frames"),
-      timeKey("close_timeout_ms", "ms", kNanosecondsPerMillisecond, kTimeoutMs,
-              &DeblurParameters::close_timeout_ns,
-              "from a frame's arrival until it is closed with the events that have come"),
+      live(instantKey("reference", &DeblurParameters::reference,
+                      "instant of the exposure that the latent image shows")),
+      live(instantKey("stamp_reference", &DeblurParameters::stamp_reference,
+                      "instant of the exposure that the stamp of an input image means")),
+      live(exposureSourceKey()),
+      live(timeKey("exposure_time_us", "us", kNanosecondsPerMicrosecond, kExposureUs,
+                   &DeblurParameters::exposure_time_ns, "exposure time; 0 = not known")),
+      live(timeKey("time_offset_us", "us", kNanosecondsPerMicrosecond, kTimeOffsetUs,
+                   &DeblurParameters::time_offset_ns,
+                   "clock of the events minus clock of the frames")),
+      live(timeKey("close_timeout_ms", "ms", kNanosecondsPerMillisecond, kTimeoutMs,
+                   &DeblurParameters::close_timeout_ns,
+                   "from a frame's arrival until it is closed with the events that have come")),
       maxBufferedEventsKey(),
       timeKey("max_backward_jump_ms", "ms", kNanosecondsPerMillisecond, kJumpMs,
               &DeblurParameters::max_backward_jump_ns,
@@ -215,7 +225,7 @@ std::vector<ConfigKey> buildTopLevelKeys() {
               &DeblurParameters::max_forward_jump_ns,
               "an event ahead of the newest by more than this is a jump of the clock, once the "
               "next array confirms it"),
-      latentImagesKey(),
+      live(latentImagesKey()),
       textKey({"response_file", "", "none",
                "camera response: 256 natural-log irradiances, one for each 8-bit DN"},
               [](const std::string& value, ParameterDraft& draft) { draft.response_file = value; }),
@@ -226,15 +236,16 @@ std::vector<ConfigKey> buildTopLevelKeys() {
               [](const std::string& value, ParameterDraft& draft) {
                 draft.loaded.ros.frame_id = value;
               }),
-      boolKey({"passthrough", "", boolText(DeblurParameters{}.passthrough),
-               "publish every frame unchanged"},
-              [](bool value, ParameterDraft& draft) { draft.loaded.deblur.passthrough = value; }),
+      live(boolKey(
+          {"passthrough", "", boolText(DeblurParameters{}.passthrough),
+           "publish every frame unchanged"},
+          [](bool value, ParameterDraft& draft) { draft.loaded.deblur.passthrough = value; })),
       boolKey({"lazy", "", boolText(RosParameters{}.lazy),
                "subscribe to the inputs only while somebody subscribes to an output image"},
               [](bool value, ParameterDraft& draft) { draft.loaded.ros.lazy = value; }),
   };
   for (ConfigKey& key : filterKeys()) {
-    keys.push_back(std::move(key));
+    keys.push_back(live(std::move(key)));
   }
   return keys;
 }
@@ -263,11 +274,15 @@ std::vector<ParameterDescription> biasDescriptions() {
 }
 
 std::string markdownTable(const std::vector<ParameterDescription>& descriptions) {
-  std::string table =
-      "| name | type | values | unit | default | meaning |\n|---|---|---|---|---|---|\n";
+  const bool some_live = std::any_of(descriptions.begin(), descriptions.end(),
+                                     [](const ParameterDescription& key) { return key.live; });
+  std::string table = std::string("| name | type | values | unit | default |") +
+                      (some_live ? " live |" : "") + " meaning |\n|---|---|---|---|---|" +
+                      (some_live ? "---|" : "") + "---|\n";
   for (const ParameterDescription& key : descriptions) {
     table += "| `" + key.name + "` | " + key.type + " | " + key.range + " | " + key.unit + " | " +
-             key.default_value + " | " + key.doc + " |\n";
+             key.default_value + " | " + (some_live ? (key.live ? "yes | " : " | ") : "") +
+             key.doc + " |\n";
   }
   return table;
 }

@@ -7,15 +7,12 @@
 
 #include "config_faults.hpp"
 #include "config_file.hpp"
+#include "contrast_keys.hpp"
 #include "parameter_draft.hpp"
 #include "parameter_keys.hpp"
 
 namespace fast_edi {
 namespace {
-
-constexpr const char* kOn = "contrast_threshold_on";
-constexpr const char* kOff = "contrast_threshold_off";
-constexpr const char* kBiases = "biases";
 
 /// Those of the four numbers behind one threshold that the configuration lacks.
 std::string missingBiases(const ParameterDraft& draft, const std::string& name) {
@@ -37,8 +34,9 @@ bool neededFromBiases(const std::string& key, const std::string& bias, const YAM
     return false;
   }
   if (!draft.has(kBiases)) {
-    faults.add(root, key + ": not given, nor biases it could be computed from; expected " + kOn +
-                         " and " + kOff + ", or biases (see the files in cfg/)");
+    faults.add(root, key + ": not given, nor biases it could be computed from; expected " +
+                         kContrastOn + " and " + kContrastOff +
+                         ", or biases (see the files in cfg/)");
     return false;
   }
   const std::string missing = missingBiases(draft, bias);
@@ -57,22 +55,11 @@ bool biasesAreFaulty(const ParameterDraft& draft) {
   });
 }
 
-std::string originText(NeededThresholds from_biases) {
-  std::string text = from_biases.on || from_biases.off ? kBiases : "";
-  for (const auto& [key, derived] :
-       {std::make_pair(kOn, from_biases.on), std::make_pair(kOff, from_biases.off)}) {
-    if (!derived) {
-      text += (text.empty() ? "" : ", ") + std::string(key);
-    }
-  }
-  return text;
-}
-
 void decideThresholds(const YAML::Node& root, ParameterDraft& draft, ConfigFaults& faults) {
   LoadedParameters& loaded = draft.loaded;
-  loaded.from_biases.on = neededFromBiases(kOn, "OnBn", root, draft, faults);
-  loaded.from_biases.off = neededFromBiases(kOff, "OffBn", root, draft, faults);
-  loaded.contrast_origin = originText(loaded.from_biases);
+  loaded.from_biases.on = neededFromBiases(kContrastOn, "OnBn", root, draft, faults);
+  loaded.from_biases.off = neededFromBiases(kContrastOff, "OffBn", root, draft, faults);
+  loaded.contrast_origin = contrastOrigin(loaded.from_biases);
   if (!draft.has(kBiases) || biasesAreFaulty(draft)) {
     return;
   }

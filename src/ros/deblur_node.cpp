@@ -40,21 +40,28 @@ DeblurNode::DeblurNode(const ros::NodeHandle& nh, const ros::NodeHandle& private
       topics_{nh_.resolveName("events"), nh_.resolveName("image_raw"), nh_.resolveName("exposure"),
               nh_.resolveName("bias_updates")},
       diagnostics_(topics_) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  updater_.emplace(nh_, private_nh_, name_);
-  updater_->setHardwareID("none");
-  updater_->add("deblurring", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
-    diagnostics_.fill(close_latency_, output_latency_, status);
-  });
-  configure();
-  if (deblurrer_) {
-    advertise();
-    if (!parameters_.ros.lazy) {
-      inputs_ = subscribe();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    updater_.emplace(nh_, private_nh_, name_);
+    updater_->setHardwareID("none");
+    updater_->add("deblurring", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+      diagnostics_.fill(close_latency_, output_latency_, status);
+    });
+    configure();
+    if (deblurrer_) {
+      advertise();
+      if (!parameters_.ros.lazy) {
+        inputs_ = subscribe();
+      }
     }
+    report_timer_ =
+        nh_.createSteadyTimer(kReportPeriod, [this](const ros::SteadyTimerEvent&) { report(); });
   }
-  report_timer_ =
-      nh_.createSteadyTimer(kReportPeriod, [this](const ros::SteadyTimerEvent&) { report(); });
+  if (deblurrer_) {
+    reconfigure_server_ = std::make_unique<ReconfigureServer>(
+        private_nh_, live_->values(),
+        [this](const LiveParameters::Values& wanted) { return reconfigure(wanted); });
+  }
 }
 
 DeblurNode::~DeblurNode() {
@@ -65,6 +72,7 @@ DeblurNode::~DeblurNode() {
     ended = std::move(inputs_);
   }
   // Each of these waits for callbacks at work, which may wait for the mutex.
+  reconfigure_server_.reset();
   ended.reset();
   report_timer_.stop();
   deblurred_publisher_.shutdown();
@@ -74,7 +82,9 @@ DeblurNode::~DeblurNode() {
 
 void DeblurNode::configure() {
   try {
-    parameters_ = parametersFromYaml(privateParameters(private_nh_), "");
+    const YAML::Node root = privateParameters(private_nh_);
+    parameters_ = parametersFromYaml(root, "");
+    live_.emplace(parameters_, root);
     sink_.emplace(parameters_.ros.frame_id,
                   [this](const sensor_msgs::ImagePtr& image, const sensor_msgs::CameraInfoPtr& info,
                          const OutputFrame& output) { deliver(image, info, output); });
@@ -89,12 +99,16 @@ void DeblurNode::configure() {
                            << configuration_error_);
     return;
   }
-  for (const std::string& warning : parameters_.warnings) {
-    ROS_WARN_STREAM(name_ << ": " << warning);
-  }
+  announceContrast();
+}
+
+void DeblurNode::announceContrast() const {
   const ContrastThresholds& thresholds = parameters_.deblur.thresholds;
   ROS_INFO_STREAM(name_ << ": contrast thresholds ON " << thresholds.on << ", OFF "
                         << thresholds.off << " from " << parameters_.contrast_origin);
+  for (const std::string& warning : contrastWarnings(thresholds)) {
+    ROS_WARN_STREAM(name_ << ": " << warning);
+  }
 }
 
 void DeblurNode::advertise() {
@@ -109,11 +123,23 @@ void DeblurNode::advertise() {
                                 info_changed, info_changed);
   comparison_publisher_ =
       transport.advertise("comparison", kLatestWins, image_changed, image_changed);
-  if (parameters_.deblur.latent.isOn()) {
-    const auto queue =
-        static_cast<std::uint32_t>(2 * kLatentQueueFrames * parameters_.deblur.latent.per_exposure);
-    latent_publisher_ = transport.advertise("latent/image_raw", std::max(queue, kOutputQueue),
-                                            image_changed, image_changed);
+  advertiseLatent();
+}
+
+std::uint32_t DeblurNode::latentQueue() const {
+  const LatentSampling& latent = parameters_.deblur.latent;
+  const int images = 2 * kLatentQueueFrames * latent.per_exposure;
+  return latent.isOn() ? std::max(static_cast<std::uint32_t>(images), kOutputQueue) : 0;
+}
+
+/// \pre latent_publisher_ is empty
+void DeblurNode::advertiseLatent() {
+  latent_queue_ = latentQueue();
+  if (latent_queue_ > 0) {
+    const image_transport::SubscriberStatusCallback changed =
+        [this](const image_transport::SingleSubscriberPublisher&) { subscribersChanged(); };
+    latent_publisher_ = image_transport::ImageTransport(nh_).advertise(
+        "latent/image_raw", latent_queue_, changed, changed);
   }
 }
 
@@ -122,10 +148,9 @@ std::unique_ptr<DeblurNode::Inputs> DeblurNode::subscribe() {
   auto inputs = std::make_unique<Inputs>();
   inputs->camera_info =
       nh_.subscribe("camera_info", kLatestWins, &DeblurNode::receiveCameraInfo, this, no_delay);
-  if (parameters_.from_biases.on || parameters_.from_biases.off) {
-    inputs->bias_updates =
-        nh_.subscribe("bias_updates", kLatestWins, &DeblurNode::receiveBiasUpdate, this, no_delay);
-  }
+  // With explicit thresholds too: they may be given back to the biases while we listen.
+  inputs->bias_updates =
+      nh_.subscribe("bias_updates", kLatestWins, &DeblurNode::receiveBiasUpdate, this, no_delay);
   inputs->exposure =
       nh_.subscribe("exposure", kExposureQueue, &DeblurNode::receiveExposure, this, no_delay);
   inputs->events = std::make_unique<EventSubscription>(
@@ -231,24 +256,80 @@ void DeblurNode::receiveExposure(const std_msgs::Int32ConstPtr& message) {
 void DeblurNode::receiveBiasUpdate(const dynamic_reconfigure::ConfigConstPtr& message) {
   whileListening([&] {
     try {
-      const auto thresholds = thresholdsAfterBiasUpdate(parameters_, *message);
-      if (!thresholds || *thresholds == deblurrer_->parameters().thresholds) {
-        return;
-      }
-      DeblurParameters changed = deblurrer_->parameters();
-      changed.thresholds = *thresholds;
-      deblurrer_->setParameters(changed);
-      parameters_.contrast_origin = "biases on " + topics_.bias_updates;
-      ROS_INFO_STREAM(name_ << ": contrast thresholds ON " << thresholds->on << ", OFF "
-                            << thresholds->off << " from " << parameters_.contrast_origin);
-      for (const std::string& warning : contrastWarnings(*thresholds)) {
-        ROS_WARN_STREAM(name_ << ": " << warning);
+      LoadedParameters next = withDriverBiases(message);
+      driver_biases_ = message;
+      if (next.deblur.thresholds != parameters_.deblur.thresholds) {
+        putInForce(std::move(next));
       }
     } catch (const std::invalid_argument& error) {
       ++totals_.bias_updates_refused;
       totals_.bias_refusal = error.what();
     }
   });
+}
+
+/// The parameters as set, with thresholds from the driver's biases where these have a say.
+/// \param biases may be null
+/// \throws std::invalid_argument when there is no threshold for them
+LoadedParameters DeblurNode::withDriverBiases(
+    const dynamic_reconfigure::ConfigConstPtr& biases) const {
+  LoadedParameters parameters = live_->loaded();
+  if (biases) {
+    const auto thresholds = thresholdsAfterBiasUpdate(parameters, *biases);
+    if (thresholds) {
+      parameters.deblur.thresholds = *thresholds;
+      parameters.contrast_origin = "biases on " + topics_.bias_updates;
+    }
+  }
+  return parameters;
+}
+
+void DeblurNode::putInForce(LoadedParameters parameters) {
+  deblurrer_->setParameters(parameters.deblur);
+  const bool contrast_changes = parameters.deblur.thresholds != parameters_.deblur.thresholds ||
+                                parameters.contrast_origin != parameters_.contrast_origin;
+  parameters_ = std::move(parameters);
+  if (contrast_changes) {
+    announceContrast();
+  }
+}
+
+LiveParameters::Values DeblurNode::reconfigure(const LiveParameters::Values& wanted) {
+  LiveParameters::Values in_force;
+  image_transport::Publisher unfit;
+  guarded([&] {
+    for (const std::string& refusal : live_->change(wanted)) {
+      ++totals_.values_refused;
+      totals_.value_refusal = refusal;
+      ROS_WARN_STREAM(name_ << ": old value kept: " << refusal);
+      last_warning_ns_["values"] = callback_start_ns_;  // the report need not say it again
+    }
+    ++totals_.reconfigurations;
+    in_force = live_->values();
+    try {
+      putInForce(withDriverBiases(driver_biases_));
+    } catch (const std::invalid_argument& error) {
+      ++totals_.bias_updates_refused;
+      totals_.bias_refusal = error.what();
+      driver_biases_.reset();
+      putInForce(live_->loaded());
+    }
+    if (latentQueue() != latent_queue_) {
+      unfit = std::exchange(latent_publisher_, {});
+    }
+  });
+  unfit.shutdown();
+  bool latent_ended = false;
+  guarded([&] {
+    if (!closing_ && latentQueue() != latent_queue_) {
+      advertiseLatent();
+      latent_ended = latent_queue_ == 0;
+    }
+  });
+  if (latent_ended) {
+    subscribersChanged();  // a subscriber that was left with the topic is none any more
+  }
+  return in_force;
 }
 
 void DeblurNode::advanceClock() {

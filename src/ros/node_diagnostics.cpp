@@ -123,6 +123,8 @@ void NodeDiagnostics::collectComplaints(const NodeSnapshot& now) {
   complain(
       "bias updates", now.bias_updates_refused, before_.bias_updates_refused,
       "update(s) on " + topics_.bias_updates + " refused, thresholds kept: " + now.bias_refusal);
+  complain("values", now.values_refused, before_.values_refused,
+           "value(s) of parameters refused, old ones kept: " + now.value_refusal);
   complain("internal error", now.internal_errors, before_.internal_errors,
            "internal error(s): " + now.internal_error);
 }
@@ -223,6 +225,8 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
   status.add("Windows predicted", c.closes_followed);
   status.add("Windows not predicted", c.closes_surprise);
   status.add("Pixels out of range", c.pixels_out_of_range);
+  status.add("Parameter changes", now_.reconfigurations);
+  status.add("Parameter values refused", now_.values_refused);
   status.add("Internal errors", now_.internal_errors);
 }
 

@@ -7,6 +7,7 @@
 #include <boost/program_options.hpp>
 
 #include "fast_edi/config/parameter_table.hpp"
+#include "fast_edi/config/tag_detector_parameters.hpp"
 
 namespace {
 
@@ -24,19 +25,23 @@ void printText(const std::vector<fast_edi::ParameterDescription>& descriptions) 
     if (!key.unit.empty()) {
       std::cout << " [" << key.unit << "]";
     }
-    std::cout << "; default: " << key.default_value << ")\n    " << key.doc << "\n";
+    std::cout << "; default: " << key.default_value << (key.live ? "; live" : "") << ")\n    "
+              << key.doc << "\n";
   }
 }
 
 void print(bool markdown) {
   if (markdown) {
     std::cout << fast_edi::markdownTable(fast_edi::parameterDescriptions()) << "\n"
-              << fast_edi::markdownTable(fast_edi::biasDescriptions());
+              << fast_edi::markdownTable(fast_edi::biasDescriptions()) << "\n"
+              << fast_edi::markdownTable(fast_edi::tagDetectorDescriptions());
     return;
   }
   printText(fast_edi::parameterDescriptions());
   std::cout << "\nIn the map biases:\n";
   printText(fast_edi::biasDescriptions());
+  std::cout << "\nOf the tag detector:\n";
+  printText(fast_edi::tagDetectorDescriptions());
 }
 
 }  // namespace
@@ -51,9 +56,11 @@ int main(int argc, char** argv) {
     po::store(po::parse_command_line(argc, argv, options), values);
     po::notify(values);
     if (values.count("help") > 0) {
-      std::cout << "Usage: list_parameters [--markdown]\n\n"
-                   "Lists the parameters of the nodelet and of the YAML files in cfg/.\n\n"
-                << options << "\nExit code: 0 done; 2 wrong arguments.\n";
+      std::cout
+          << "Usage: list_parameters [--markdown]\n\n"
+             "Lists the parameters of the nodelet and of the YAML files in cfg/. Those called\n"
+             "live can be changed while frames are deblurred.\n\n"
+          << options << "\nExit code: 0 done; 2 wrong arguments.\n";
       return kDone;
     }
     print(markdown);

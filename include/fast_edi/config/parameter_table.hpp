@@ -2,10 +2,17 @@
 /// What there is to configure, for people: README's table and the tools' help come from here.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace fast_edi {
+
+/// Lowest and highest number that is accepted; the lowest itself may be excluded.
+struct NumberLimits {
+  double lowest = 0.0;
+  double highest = 0.0;
+};
 
 /// One key of a configuration.
 struct ParameterDescription {
@@ -15,6 +22,9 @@ struct ParameterDescription {
   std::string range;          ///< what is accepted; empty when anything of the type is
   std::string default_value;  ///< taken from the code's own defaults
   std::string doc;
+  std::optional<NumberLimits> limits = {};  ///< of numbers and integers
+  /// Can be changed while frames are deblurred; else a new value takes a new start.
+  bool live = false;
 };
 
 /// All keys at the top level, in README's order.

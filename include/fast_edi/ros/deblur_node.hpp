@@ -19,6 +19,7 @@
 #include <sensor_msgs/Image.h>
 #include <std_msgs/Int32.h>
 
+#include "fast_edi/config/live_parameters.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/core/deblurrer.hpp"
 #include "fast_edi/ros/comparison_view.hpp"
@@ -26,6 +27,7 @@
 #include "fast_edi/ros/latency_record.hpp"
 #include "fast_edi/ros/message_frame_sink.hpp"
 #include "fast_edi/ros/node_diagnostics.hpp"
+#include "fast_edi/ros/reconfigure_server.hpp"
 
 namespace fast_edi {
 
@@ -34,18 +36,20 @@ namespace fast_edi {
 /// nodelet's getNodeHandle() whatever the number of the manager's worker threads, or ros::spin(). A
 /// queue that calls several at once does no harm beyond that order.
 ///
-/// mutex_ guards all members that callbacks use: everything from sink_ on, parameters_ and
-/// closing_. Each callback holds it from beginning to end. It is needed even with a queue as above,
-/// which runs already while the constructor is at work, and still while the destructor is.
+/// mutex_ guards all members that callbacks use: everything from sink_ on, live_, parameters_,
+/// driver_biases_ and closing_. Each callback holds it from beginning to end. It is needed even
+/// with a queue as above, which runs already while the constructor is at work, and still while the
+/// destructor is.
 ///
-/// Order of locks: mutex_ first, then any lock inside ROS (publishing, subscribing, diagnostics).
-/// The other way round would be to hold mutex_ while waiting for a callback to end, which may be
-/// waiting for mutex_. So what waits for callbacks (ending subscriptions, timers and publishers) is
-/// done without holding it.
+/// Order of locks: that of ReconfigureServer, mutex_, then any lock inside ROS (publishing,
+/// subscribing, diagnostics). The server is constructed and destroyed without mutex_. The other way
+/// round would be to hold mutex_ while waiting for a callback to end, which may be waiting for
+/// mutex_. So what waits for callbacks (ending subscriptions, timers and publishers) is done
+/// without holding it.
 ///
-/// Closing. First the inputs and the clock end, then the report, then the publishers: at no time
-/// can a callback meet a publisher that is gone. Subscribers that come and go meanwhile find
-/// closing_ set.
+/// Closing. First requests to change parameters, the inputs and the clock end, then the report,
+/// then the publishers: at no time can a callback meet a publisher that is gone. Subscribers that
+/// come and go meanwhile find closing_ set.
 ///
 /// No exception leaves a callback: one that gets here is logged, reported and the pipeline starts
 /// anew.
@@ -75,6 +79,8 @@ class DeblurNode {
 
   void configure();
   void advertise();
+  void advertiseLatent();
+  std::uint32_t latentQueue() const;
   void subscribersChanged();
   std::unique_ptr<Inputs> subscribe();
 
@@ -84,9 +90,13 @@ class DeblurNode {
   void receiveCameraInfo(const sensor_msgs::CameraInfoConstPtr& message);
   void receiveExposure(const std_msgs::Int32ConstPtr& message);
   void receiveBiasUpdate(const dynamic_reconfigure::ConfigConstPtr& message);
+  LiveParameters::Values reconfigure(const LiveParameters::Values& wanted);
   void advanceClock();
   void report();
 
+  LoadedParameters withDriverBiases(const dynamic_reconfigure::ConfigConstPtr& biases) const;
+  void putInForce(LoadedParameters parameters);
+  void announceContrast() const;
   void deliver(const sensor_msgs::ImagePtr& image, const sensor_msgs::CameraInfoPtr& info,
                const OutputFrame& output);
   void publishComparison(const sensor_msgs::Image& image, const OutputFrame& output);
@@ -105,7 +115,9 @@ class DeblurNode {
   std::string name_;
   std::string configuration_error_;
   InputTopics topics_;
-  LoadedParameters parameters_;
+  std::optional<LiveParameters> live_;  ///< as set; none when idle for good
+  LoadedParameters parameters_;         ///< in force: the same with the driver's biases
+  dynamic_reconfigure::ConfigConstPtr driver_biases_;  ///< the last that could be used
 
   std::mutex mutex_;
   bool closing_ = false;  ///< the destructor is at work
@@ -122,9 +134,11 @@ class DeblurNode {
   image_transport::CameraPublisher deblurred_publisher_;
   image_transport::Publisher comparison_publisher_;
   image_transport::Publisher latent_publisher_;  ///< empty when `latent_images` is 0
+  std::uint32_t latent_queue_ = 0;               ///< of that publisher
   std::optional<diagnostic_updater::Updater> updater_;
   ros::SteadyTimer report_timer_;
-  std::unique_ptr<Inputs> inputs_;  ///< null while nobody listens
+  std::unique_ptr<Inputs> inputs_;                         ///< null while nobody listens
+  std::unique_ptr<ReconfigureServer> reconfigure_server_;  ///< none when idle for good
 };
 
 }  // namespace fast_edi

@@ -1,0 +1,41 @@
+/// \file
+/// The dynamic_reconfigure server of a node: the service `set_parameters` and what belongs to it,
+/// in front of LiveParameters.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include <ros/node_handle.h>
+
+#include "fast_edi/config/live_parameters.hpp"
+
+namespace fast_edi {
+
+/// Values out of range reach the handler, which refuses them; the library's own server would move
+/// them into their range and say nothing. The reply, the topic `parameter_updates` and the
+/// parameter server show what is in force after each request. The parameter server has no contrast
+/// threshold while it comes from biases: a later start with 0 would be refused.
+///
+/// Threads. The handler is called from the node handle's callback queue, and holding a lock of this
+/// object: it may take the caller's mutex, but the caller must not hold that mutex while it
+/// constructs or destroys this object.
+class ReconfigureServer {
+ public:
+  /// \param wanted values that differ from those in force
+  /// \return all values in force afterwards
+  using Handler = std::function<LiveParameters::Values(const LiveParameters::Values& wanted)>;
+
+  /// \param in_force all live parameters; the handler is not called with them
+  ReconfigureServer(const ros::NodeHandle& private_nh, const LiveParameters::Values& in_force,
+                    Handler handler);
+  ~ReconfigureServer();
+  ReconfigureServer(const ReconfigureServer&) = delete;
+  ReconfigureServer& operator=(const ReconfigureServer&) = delete;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fast_edi
