@@ -14,7 +14,7 @@ FAST_EDI_NOETIC=/opt/ros/noetic
 FAST_EDI_DEBIAN_BUILD=(
   g++ make cmake catkin
   libroscpp-dev libroslib-dev libnodeletlib-dev libcv-bridge-dev libimage-transport-dev librosbag-dev
-  libdynamic-reconfigure-config-init-mutex-dev libdiagnostic-updater-dev
+  libdynamic-reconfigure-config-init-mutex-dev python3-dynamic-reconfigure libdiagnostic-updater-dev
   libgeometry-msgs-dev libnav-msgs-dev
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
   libvisualization-msgs-dev libapriltag-dev libbz2-dev liblz4-dev
@@ -22,7 +22,7 @@ FAST_EDI_DEBIAN_BUILD=(
 )
 FAST_EDI_DEBIAN_RUN=(
   libnodeletlib-tools python3-roslaunch python3-rosbag python3-rostopic python3-sensor-msgs
-  python3-diagnostic-msgs python3-dynamic-reconfigure rosbash opencv-data
+  python3-diagnostic-msgs rosbash opencv-data
 )
 FAST_EDI_DEBIAN_TEST=(
   python3-rostest libgtest-dev libgmock-dev catkin-lint clang-tidy clang-format doxygen libxml2-utils
