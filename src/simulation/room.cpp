@@ -227,7 +227,7 @@ double Room::depthAt(const RigidPose& pose, const cv::Point2d& pixel) const {
 std::vector<Room::View> Room::viewsOf(const Body& body, const RigidPose& pose) const {
   const Eigen::Matrix3d rotation = pose.orientation.toRotationMatrix();
   // Of a vector in the world: its scalar product with the ray of pixel (x, y).
-  const auto alongRay = [&](const Eigen::Vector3d& vector) {
+  const auto along_ray = [&](const Eigen::Vector3d& vector) {
     const Eigen::Vector3d seen = rotation.transpose() * vector / focal_length_px_;
     return Eigen::Vector3d(seen.x(), seen.y(),
                            seen.z() * focal_length_px_ - 0.5 * (size_.width - 1) * seen.x() -
@@ -244,9 +244,9 @@ std::vector<Room::View> Room::viewsOf(const Body& body, const RigidPose& pose) c
     if (distance < kEdgeOnM) continue;
     // The ray from the camera meets the plane at depth 1 / w, there at (u / w, v / w) from the
     // face's centre.
-    const Eigen::Vector3d w = -alongRay(normal) / distance;
-    const Eigen::Vector3d u = alongRay(face.u) + offset.dot(face.u) * w;
-    const Eigen::Vector3d v = alongRay(face.v) + offset.dot(face.v) * w;
+    const Eigen::Vector3d w = -along_ray(normal) / distance;
+    const Eigen::Vector3d u = along_ray(face.u) + offset.dot(face.u) * w;
+    const Eigen::Vector3d v = along_ray(face.v) + offset.dot(face.v) * w;
     View view{};
     for (std::size_t i = 0; i < view.levels.size(); ++i) {
       const Level& level = face.levels[i];

@@ -80,6 +80,7 @@ Jet window(double t_s, double length_s, double rest_s, double ramp_s) {
 
 /// Distance at a speed that rises to 1 over the ramp and falls to 0 before the end, divided by the
 /// whole distance: from 0 to 1.
+/// \pre length_s is at least two ramps
 Jet travelled(double t_s, double length_s, double ramp_s) {
   // Integral of rise(); a half at 1.
   const auto risen = [](double x) { return x * x * x * x * (x * (x - 3.0) + 2.5); };
@@ -114,8 +115,7 @@ Jet sum(const Waves& waves, double t_s) {
 RoomTrajectory::RoomTrajectory(const RoomSettings& settings, std::int64_t length_ns,
                                std::uint64_t seed)
     : length_s_(static_cast<double>(length_ns) / static_cast<double>(kNanosecondsPerSecond)),
-      // Short recordings keep some of everything: the ramps shrink with them.
-      ramp_s_(std::min(kWalkRampS, length_s_ / 4.0)),
+      // Short recordings are for trying things out: they are shaken all the same.
       gentle_s_(std::min(settings.gentle_s, length_s_ / 4.0)),
       shake_ramp_s_(std::min(kShakeRampS, length_s_ / 8.0)),
       radius_x_m_(0.5 * settings.length_m - kClearanceM),
@@ -154,14 +154,16 @@ RoomTrajectory::RoomTrajectory(const RoomSettings& settings, std::int64_t length
 RigidMotion RoomTrajectory::motionAt(std::int64_t t_ns) const {
   const double t_s = std::clamp(
       static_cast<double>(t_ns) / static_cast<double>(kNanosecondsPerSecond), 0.0, length_s_);
-  const Jet walk = window(t_s, length_s_, 0.0, ramp_s_);
+  const Jet walk = window(t_s, length_s_, 0.0, kWalkRampS);
   const Jet shake = window(t_s, length_s_, gentle_s_, shake_ramp_s_);
   std::array<Jet, kAxes> axes;
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
     axes[axis] = walk * sum(walking_[axis], t_s) + shake * sum(shaking_[axis], t_s);
   }
-  const Jet angle =
-      Jet{first_angle_rad_, 0.0, 0.0} + lap_angle_rad_ * travelled(t_s, length_s_, ramp_s_);
+  Jet angle{first_angle_rad_, 0.0, 0.0};
+  if (lap_angle_rad_ != 0.0) {
+    angle = angle + lap_angle_rad_ * travelled(t_s, length_s_, kWalkRampS);
+  }
   axes[kX] = axes[kX] + radius_x_m_ * cos(angle);
   axes[kY] = axes[kY] + radius_y_m_ * sin(angle);
   axes[kZ].value += height_m_;

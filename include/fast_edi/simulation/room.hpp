@@ -42,8 +42,8 @@ class Room {
   /// A level of a texture's pyramid.
   struct Level {
     cv::Mat1f texels;
-    float u_scale;  ///< of texel coordinates against those of the finest level
-    float v_scale;
+    float u_scale = 1.0F;  ///< of texel coordinates against those of the finest level
+    float v_scale = 1.0F;
   };
   /// A rectangle, seen from where its normal v x u points to; from there its texture is not
   /// mirrored.

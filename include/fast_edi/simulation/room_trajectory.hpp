@@ -51,7 +51,6 @@ class RoomTrajectory {
   using Waves = std::array<std::vector<Wave>, kAxes>;
 
   double length_s_;
-  double ramp_s_;        ///< of walking
   double gentle_s_;      ///< without shaking, at each end
   double shake_ramp_s_;  ///< of the shaking
   double radius_x_m_;
