@@ -15,6 +15,7 @@
 #include "fast_edi/core/latent_image.hpp"
 #include "fast_edi/core/latent_video.hpp"
 #include "fast_edi/core/online_calibration.hpp"
+#include "fast_edi/core/stamp_limits.hpp"
 #include "fast_edi/core/window_predictor.hpp"
 
 namespace fast_edi {
@@ -401,6 +402,8 @@ void Deblurrer::Impl::closeFront(const FrameVerdict& verdict) {
     output.exposure = frame.window.inFrameTime(parameters_);
     output.stamp_ns = output.exposure.at(parameters_.reference);
   }
+  // A frame stamped near the beginning of time may begin before it.
+  output.stamp_ns = std::clamp(output.stamp_ns, std::int64_t{0}, kLastStamp_ns);
   if (!isLaterThanLastOutput(frame, output.stamp_ns)) {
     ++counters_.frames_suppressed;
     return;

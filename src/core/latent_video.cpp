@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "fast_edi/core/latent_instants.hpp"
+#include "fast_edi/core/stamp_limits.hpp"
 
 namespace fast_edi {
 
@@ -75,7 +76,8 @@ std::size_t LatentVideo::show(Source& source, const std::vector<std::int64_t>& i
   std::size_t images = 0;
   for (const std::int64_t t_ns : instants) {
     // Exposures that overlap: the frame before has shown this time already.
-    if (last_stamp_ns_ && t_ns <= *last_stamp_ns_) {
+    const bool shown = last_stamp_ns_ && t_ns <= *last_stamp_ns_;
+    if (shown || !isStamp(t_ns)) {
       continue;
     }
     source.gains.at(*events.lists(), t_ns + source.offset_ns, gain_.data());

@@ -23,7 +23,7 @@ struct InputFrame {
 /// What became of a frame.
 struct OutputFrame {
   InputFrame input;
-  std::int64_t stamp_ns = 0;  ///< stamp of the output image
+  std::int64_t stamp_ns = 0;  ///< stamp of the output image, one that isStamp()
   bool deblurred = false;     ///< false: the output is a copy of the input
   PassReason pass_reason = PassReason::kPassthroughParameter;  ///< when !deblurred
   ExposureInterval exposure;  ///< in frame time; zero length when not known
