@@ -1,0 +1,75 @@
+/// \file
+/// What one pass over a recording gathers for the checks.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "fast_edi/core/contrast_threshold.hpp"
+#include "fast_edi/core/event_wire.hpp"
+#include "fast_edi/core/sequence_gaps.hpp"
+#include "fast_edi/core/types.hpp"
+#include "fast_edi/validation/event_statistics.hpp"
+#include "fast_edi/validation/event_timeline.hpp"
+#include "fast_edi/validation/frame_log.hpp"
+
+namespace fast_edi {
+
+/// The settings that the recording is held against.
+struct AssumedParameters {
+  ContrastThresholds thresholds{0.25, 0.25};
+  bool thresholds_given = false;
+  ExposureInstant stamp_reference = ExposureInstant::kMid;
+  std::int64_t time_offset_ns = 0;
+  std::int64_t exposure_time_ns = 0;     ///< 0 = not known
+  bool exposure_from_parameter = false;  ///< exposure messages are not used
+};
+
+class RecordingSurvey {
+ public:
+  /// Shorter exposures are rather values in milliseconds.
+  static constexpr std::int64_t kLeastExposure_us = 100;
+
+  explicit RecordingSurvey(const AssumedParameters& parameters) : parameters_(parameters) {}
+
+  void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
+                 std::int64_t record_ns);
+  void addFrame(const FrameMessage& frame);
+  void addExposure(std::int32_t exposure_us, std::int64_t record_ns);
+  void finish();
+
+  const AssumedParameters& parameters() const { return parameters_; }
+  const EventTimeline& timeline() const { return timeline_; }
+  const FrameLog& frames() const { return frames_; }
+  /// Of the first size stated; null without events.
+  const EventStatistics* statistics() const { return statistics_ ? &*statistics_ : nullptr; }
+  /// Event arrays by the size that they state, as {width, height}.
+  const std::map<std::pair<int, int>, std::uint64_t>& eventSizes() const { return event_sizes_; }
+  std::uint64_t arrayGaps() const { return array_gaps_; }
+  /// Events minus frames by the times at which both were recorded: good to some ten milliseconds.
+  std::int64_t roughClockOffset_ns() const;
+  /// Typical value of the exposure messages, 0 = none [us].
+  std::int64_t typicalExposure_us() const;
+  /// False when the exposure messages cannot be exposure times in microseconds.
+  bool exposuresPlausible() const;
+  /// Length of a frame's exposure as fast_edi would take it, 0 = not known [ns].
+  std::int64_t assumedLength_ns(const LoggedFrame& frame) const;
+  /// The same in event time with the assumed parameters; empty while the length is not known.
+  std::optional<ExposureInterval> assumedExposure(const LoggedFrame& frame) const;
+
+ private:
+  AssumedParameters parameters_;
+  EventTimeline timeline_;
+  FrameLog frames_;
+  std::optional<EventStatistics> statistics_;
+  std::map<std::pair<int, int>, std::uint64_t> event_sizes_;
+  SequenceGaps sequence_gaps_;
+  std::uint64_t array_gaps_ = 0;
+  bool use_messages_ = false;                  ///< exposure messages, from finish() on
+  std::vector<std::int64_t> array_delays_ns_;  ///< recorded - last event
+};
+
+}  // namespace fast_edi

@@ -1,0 +1,267 @@
+/// \file
+/// `validate_bag`: looks through a recording for what breaks deblurring and says what to set.
+
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <ros/serialization.h>
+#include <sensor_msgs/Image.h>
+#include <std_msgs/Int32.h>
+#include <yaml-cpp/yaml.h>
+#include <boost/program_options.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "fast_edi/config/parameters_from_yaml.hpp"
+#include "fast_edi/evaluation/plot.hpp"
+#include "fast_edi/ros/bag_deserialise.hpp"
+#include "fast_edi/ros/bag_error.hpp"
+#include "fast_edi/ros/bag_reader.hpp"
+#include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/ros/message_conversion.hpp"
+#include "fast_edi/ros/progress_bar.hpp"
+#include "fast_edi/ros/topic_names.hpp"
+#include "fast_edi/validation/recording_validator.hpp"
+#include "fast_edi/validation/report_text.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+
+constexpr int kSound = 0;
+constexpr int kFailed = 1;
+constexpr int kFindings = 2;
+
+struct Arguments {
+  std::string bag;
+  std::string config;
+  std::string output;
+  fast_edi::TopicNames topics;
+  std::vector<std::string> overrides;
+};
+
+/// \return false when help was asked for and given
+bool parseArguments(int argc, char** argv, Arguments& arguments) {
+  fast_edi::TopicNames& topics = arguments.topics;
+  po::options_description visible("Options");
+  visible.add_options()("help,h", "print this")(
+      "config", po::value(&arguments.config)->value_name("YAML"),
+      "parameters that the recording is held against, e.g. cfg/davis346.yaml; without one, "
+      "thresholds are not judged")("output", po::value(&arguments.output)->value_name("FOLDER"),
+                                   "folder for a plot of the agreement of frames and events over "
+                                   "the shift of the exposures")(
+      "events", po::value(&topics.events)->default_value(topics.events)->value_name("TOPIC"),
+      "event arrays")("image",
+                      po::value(&topics.image)->default_value(topics.image)->value_name("TOPIC"),
+                      "frames")(
+      "exposure", po::value(&topics.exposure)->default_value(topics.exposure)->value_name("TOPIC"),
+      "exposure lengths [us]; may be missing");
+  po::options_description all;
+  all.add(visible).add_options()("word", po::value<std::vector<std::string>>());
+  po::positional_options_description positional;
+  positional.add("word", -1);
+  po::variables_map values;
+  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  if (argc == 1 || values.count("help") > 0) {
+    std::cout
+        << "Usage: validate_bag BAG [--config cfg/davis346.yaml] [options] [parameter:=value "
+           "...]\n\n"
+           "Looks through a recording for what breaks deblurring. For each finding it prints what\n"
+           "was expected, what was found and what to set, and at the end lines for a YAML file.\n"
+           "Topics of other names are taken when they are the only ones of their type.\n\n"
+        << visible << "\nExit code: 0 no findings; 1 failed; 2 findings.\n";
+    return false;
+  }
+  po::notify(values);
+  if (values.count("word") > 0) {
+    for (const std::string& word : values["word"].as<std::vector<std::string>>()) {
+      if (word.find(":=") != std::string::npos) {
+        arguments.overrides.push_back(word);
+      } else if (arguments.bag.empty()) {
+        arguments.bag = word;
+      } else {
+        throw po::error("\"" + word + "\": expected one recording and parameter:=value");
+      }
+    }
+  }
+  if (arguments.bag.empty()) {
+    throw po::error("no recording is named");
+  }
+  return true;
+}
+
+fast_edi::AssumedParameters assumedParameters(const Arguments& arguments) {
+  fast_edi::AssumedParameters assumed;
+  assumed.thresholds_given = true;
+  fast_edi::LoadedParameters loaded;
+  if (!arguments.config.empty()) {
+    loaded = fast_edi::parametersFromFile(arguments.config, arguments.overrides);
+  } else {
+    YAML::Node root(YAML::NodeType::Map);
+    fast_edi::applyOverrides(root, arguments.overrides);
+    if (!root["contrast_threshold_on"].IsDefined() && !root["biases"].IsDefined()) {
+      assumed.thresholds_given = false;
+      root["contrast_threshold_on"] = assumed.thresholds.on;
+      root["contrast_threshold_off"] = assumed.thresholds.off;
+    }
+    loaded = fast_edi::parametersFromYaml(root, ".");
+  }
+  for (const std::string& warning : loaded.warnings) {
+    std::cerr << "warning: " << warning << "\n";
+  }
+  assumed.thresholds = loaded.deblur.thresholds;
+  assumed.stamp_reference = loaded.deblur.stamp_reference;
+  assumed.time_offset_ns = loaded.deblur.time_offset_ns;
+  assumed.exposure_time_ns = loaded.deblur.exposure_time_ns;
+  assumed.exposure_from_parameter =
+      loaded.deblur.exposure_source == fast_edi::ExposureSource::kParameter;
+  return assumed;
+}
+
+/// Hands a message on. \return false when it contradicts itself
+bool feed(const fast_edi::BagMessage& message, const fast_edi::TopicNames& topics,
+          fast_edi::RecordingValidator& validator) {
+  const auto record_ns = static_cast<std::int64_t>(message.time.toNSec());
+  const std::string& topic = message.connection->topic;
+  try {
+    if (topic == topics.events) {
+      const auto array = fast_edi::deserialise<fast_edi::EventArrayView>(message);
+      validator.addEvents(array->events(), fast_edi::sensorSize(*array), array->header.seq,
+                          record_ns);
+    } else if (topic == topics.exposure) {
+      validator.addExposure(fast_edi::deserialise<std_msgs::Int32>(message)->data, record_ns);
+    } else if (topic == topics.image) {
+      const auto image = fast_edi::deserialise<sensor_msgs::Image>(message);
+      const fast_edi::ImageReading reading = fast_edi::readImage(*image);
+      fast_edi::FrameMessage frame;
+      frame.stamp_ns = static_cast<std::int64_t>(image->header.stamp.toNSec());
+      frame.sequence = image->header.seq;
+      frame.record_ns = record_ns;
+      frame.size = {static_cast<int>(image->width), static_cast<int>(image->height)};
+      frame.pixels = reading.view;
+      frame.fault = reading.reason;
+      validator.addFrame(frame);
+    }
+  } catch (const ros::serialization::StreamOverrunException&) {
+    return false;
+  }
+  return true;
+}
+
+struct PassResult {
+  std::uint64_t malformed = 0;
+  std::vector<fast_edi::BagDamage> damage;
+};
+
+PassResult readThrough(const Arguments& arguments, const fast_edi::TopicNames& topics,
+                       const std::string& label, fast_edi::RecordingValidator& validator) {
+  PassResult result;
+  fast_edi::BagReader reader(arguments.bag);
+  fast_edi::ProgressBar bar(label);
+  fast_edi::BagMessage message;
+  while (reader.next(message)) {
+    result.malformed += feed(message, topics, validator) ? 0 : 1;
+    bar.update(reader.position(), reader.messageCount());
+  }
+  result.damage = reader.damage();
+  return result;
+}
+
+void addFileFindings(const PassResult& pass, std::vector<fast_edi::Finding>& findings) {
+  if (!pass.damage.empty()) {
+    findings.push_back({"file-damaged", "a complete bag",
+                        fast_edi::textOf("%zu places cannot be read, the first at byte %llu: %s",
+                                         pass.damage.size(),
+                                         static_cast<unsigned long long>(pass.damage[0].offset),
+                                         pass.damage[0].what.c_str()),
+                        "deblur_bag reads what is left; rosbag reindex mends a cut bag"});
+  }
+  if (pass.malformed > 0) {
+    findings.push_back(
+        {"messages-malformed", "messages as long as they say",
+         fast_edi::textOf("%llu are shorter", static_cast<unsigned long long>(pass.malformed)),
+         "record again; these messages are not used"});
+  }
+}
+
+void drawCurve(const std::string& folder, const fast_edi::TimingEstimate& timing) {
+  fs::create_directories(folder);
+  if (timing.curve.empty()) {
+    std::cerr << "warning: nothing to draw: " << timing.why_not << "\n";
+    return;
+  }
+  fast_edi::PlotSeries correlation{"correlation", {}};
+  fast_edi::PlotSeries cost{"cost (log residual)", {}};
+  for (const fast_edi::TimingEstimate::CurvePoint& point : timing.curve) {
+    correlation.values.emplace_back(point.correlation);
+    cost.values.emplace_back(point.cost);
+  }
+  const std::string path = (fs::path(folder) / "shift.png").string();
+  const cv::Mat plot = fast_edi::linePlot(
+      {"Agreement of frames and events over the shift of the exposures",
+       fast_edi::textOf("from %.1f ms to %.1f ms behind the stamps",
+                        timing.curve.front().shift_ns * 1e-6, timing.curve.back().shift_ns * 1e-6),
+       ""},
+      {correlation, cost});
+  if (!cv::imwrite(path, plot)) {
+    throw std::runtime_error("cannot write " + path);
+  }
+  std::cout << "written: " << path << "\n";
+}
+
+int run(const Arguments& arguments) {
+  const fast_edi::AssumedParameters assumed = assumedParameters(arguments);
+  fast_edi::TopicNames topics = arguments.topics;
+  topics.output = "/validate_bag";  // writes none: topics of deblurred frames may be there already
+  {
+    const fast_edi::BagReader reader(arguments.bag);
+    topics = fast_edi::guessTopics(topics, reader.connections());
+    const std::string faults = fast_edi::checkTopics(topics, reader.connections());
+    if (!faults.empty()) {
+      fast_edi::printFinding(
+          std::cout, {"topics", "event arrays, frames and exposures (std_msgs/Int32)", faults,
+                      "name them by --events, --image and --exposure, or record them"});
+      return kFindings;
+    }
+  }
+  std::cout << "events " << topics.events << ", frames " << topics.image << ", exposures "
+            << topics.exposure << "\n";
+  fast_edi::RecordingValidator validator(assumed);
+  const PassResult pass = readThrough(arguments, topics, "looking through", validator);
+  if (validator.endSurvey()) {
+    readThrough(arguments, topics, "picking frames", validator);
+  }
+  fast_edi::ValidationReport report;
+  {
+    fast_edi::ProgressBar bar("comparing frames with events");
+    report = validator.finish([&bar](int done, int total) {
+      bar.update(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(total));
+    });
+  }
+  addFileFindings(pass, report.findings);
+  fast_edi::printReport(std::cout, validator.survey(), report);
+  if (!arguments.output.empty()) {
+    drawCurve(arguments.output, report.timing);
+  }
+  return report.findings.empty() ? kSound : kFindings;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    Arguments arguments;
+    return parseArguments(argc, argv, arguments) ? run(arguments) : kSound;
+  } catch (const po::error& error) {
+    std::cerr << "validate_bag: " << error.what() << " (see --help)\n";
+  } catch (const std::exception& error) {
+    std::cerr << "validate_bag: " << error.what() << "\n";
+  }
+  return kFailed;
+}

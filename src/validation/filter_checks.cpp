@@ -1,0 +1,163 @@
+#include "fast_edi/validation/filter_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace fast_edi {
+namespace {
+
+constexpr double kMs = static_cast<double>(kNanosecondsPerMillisecond);
+/// Bins of a histogram that are compared on either side of an edge.
+constexpr std::size_t kSide = 3;
+/// Filter times that are looked for.
+constexpr double kLeastActivityTime_ns = 0.5 * kMs;
+constexpr double kMostActivityTime_ns = 110.0 * kMs;
+constexpr double kLeastRefractoryTime_ns = 0.2 * kMs;
+constexpr double kMostRefractoryTime_ns = 10.0 * kMs;
+/// A break-off: this many times fewer events behind the edge than before it, and enough of them.
+constexpr double kBreakOff = 2.0;
+/// Times beyond this part of a stretch of events are too often cut off by its end.
+constexpr double kCutOff = 0.25;
+constexpr std::size_t kTrend = 7;  ///< bins from the edge to where the trend is taken
+constexpr std::uint64_t kEnough = 60;
+/// A set-in: at most this part before the edge.
+constexpr double kSetIn = 0.03;
+/// Events in the first bin behind it, of those in three.
+constexpr double kAtOnce = 0.22;
+/// Events before that edge, of all.
+constexpr double kMostEarlier = 0.01;
+constexpr double kMissingPolarity = 0.01;
+constexpr double kImbalance = 2.0;
+constexpr std::uint64_t kEnoughForBalance = 1000;
+constexpr std::size_t kListedPixels = 8;  ///< as many as the hardware can mask
+
+unsigned long long count(std::uint64_t value) {
+  return value;
+}
+
+/// Natural log of how much less there is behind a bin than before it. A peak just before the bin
+/// does not count as a fall: what lies before the peak is compared, too.
+double fall(const TimeHistogram& times, std::size_t bin) {
+  const std::uint64_t before =
+      std::min(times.sum(bin - kSide, bin), times.sum(bin - 2 * kSide, bin - kSide));
+  const std::uint64_t behind = times.sum(bin + 1, bin + 1 + kSide);
+  return std::log((static_cast<double>(before) + 1.0) / (static_cast<double>(behind) + 1.0));
+}
+
+void checkPolarity(const EventStatistics& statistics, std::vector<Finding>& findings) {
+  const auto on = static_cast<double>(statistics.on());
+  const auto off = static_cast<double>(statistics.off());
+  if (statistics.on() + statistics.off() < kEnoughForBalance) {
+    return;
+  }
+  const std::string found =
+      textOf("%llu ON, %llu OFF", count(statistics.on()), count(statistics.off()));
+  if (polarityIsMissing(statistics)) {
+    findings.push_back(
+        {"polarity-missing", "ON and OFF events in like numbers", found,
+         textOf("driver: polarity_suppress: false, polarity_flatten: false; else check %s",
+                on < off ? "OnBn, which may be too high"
+                         : "OffBn, which may be too low (the "
+                           "stock OFFBn_fine is 0)")});
+  } else if (std::max(on, off) > kImbalance * std::min(on, off)) {
+    findings.push_back({"polarity-imbalance",
+                        textOf("numbers of ON and OFF events within a factor of %.0f", kImbalance),
+                        found,
+                        textOf("driver: check %s; fast_edi: contrast_threshold_%s about %.1f times "
+                               "contrast_threshold_%s",
+                               on > off ? "OffBn (too low) or OnBn (too low)"
+                                        : "OnBn (too high) or OffBn (too high)",
+                               on > off ? "off" : "on", std::max(on, off) / std::min(on, off),
+                               on > off ? "on" : "off")});
+  }
+}
+
+void checkHotPixels(const EventStatistics& statistics, std::vector<Finding>& findings) {
+  const std::vector<HotPixel> hot = statistics.hotPixels();
+  if (hot.empty()) {
+    return;
+  }
+  std::string list;
+  for (std::size_t i = 0; i < std::min(hot.size(), kListedPixels); ++i) {
+    list += textOf("%s(%d, %d) %.0f/s", i == 0 ? "" : ", ", hot[i].x, hot[i].y, hot[i].rate_hz);
+  }
+  findings.push_back({"hot-pixels",
+                      "no pixel that fires all the time, far more than those around it",
+                      textOf("%zu, as (column, row) and rate: %s%s", hot.size(), list.c_str(),
+                             hot.size() > kListedPixels ? ", ..." : ""),
+                      "driver: pixel_auto_train, or pixel_0_column/_row to pixel_7_...; fast_edi: "
+                      "filter_despeckle: true"});
+}
+
+}  // namespace
+
+std::optional<double> backgroundActivityEdge_ns(const TimeHistogram& times, double longest_ns) {
+  std::optional<double> edge_ns;
+  double sharpest = std::log(kBreakOff);
+  for (std::size_t bin = kTrend + 2 * kSide; bin + kTrend + kSide < TimeHistogram::kBins; ++bin) {
+    const double start_ns = TimeHistogram::binStart_ns(bin);
+    if (start_ns < kLeastActivityTime_ns || start_ns > longest_ns ||
+        times.sum(bin - kSide, bin) < kEnough) {
+      continue;
+    }
+    // How fast the curve falls anyway, on either side of the edge.
+    const double trend = std::max({0.0, fall(times, bin - kTrend), fall(times, bin + kTrend)});
+    const double drop = fall(times, bin) - trend;
+    if (drop > sharpest) {
+      sharpest = drop;
+      edge_ns = TimeHistogram::binStart_ns(bin + 1);
+    }
+  }
+  return edge_ns;
+}
+
+std::optional<double> refractoryEdge_ns(const TimeHistogram& times) {
+  for (std::size_t bin = kSide; bin + kSide < TimeHistogram::kBins; ++bin) {
+    const double start_ns = TimeHistogram::binStart_ns(bin);
+    if (start_ns < kLeastRefractoryTime_ns || start_ns > kMostRefractoryTime_ns) {
+      continue;
+    }
+    const std::uint64_t before = times.sum(bin - kSide, bin);
+    const std::uint64_t behind = times.sum(bin + 1, bin + 1 + kSide);
+    const std::uint64_t earlier = times.sum(0, bin);
+    // All at once: the first whole bin behind the edge is not far below those that follow.
+    if (behind >= kEnough && static_cast<double>(before) <= kSetIn * static_cast<double>(behind) &&
+        static_cast<double>(times[bin + 1]) >= kAtOnce * static_cast<double>(behind) &&
+        static_cast<double>(earlier) <= kMostEarlier * static_cast<double>(times.total())) {
+      return TimeHistogram::binStart_ns(bin + 1);
+    }
+  }
+  return std::nullopt;
+}
+
+bool polarityIsMissing(const EventStatistics& statistics) {
+  const std::uint64_t all = statistics.on() + statistics.off();
+  return all >= kEnoughForBalance &&
+         static_cast<double>(std::min(statistics.on(), statistics.off())) <
+             kMissingPolarity * static_cast<double>(all);
+}
+
+std::vector<Finding> checkFilters(const EventStatistics& statistics, double stretch_ns) {
+  std::vector<Finding> findings;
+  if (const auto edge_ns = backgroundActivityEdge_ns(
+          statistics.neighbourTimes(), std::min(kMostActivityTime_ns, kCutOff * stretch_ns))) {
+    findings.push_back(
+        {"background-activity-filter", "isolated events, too: noise shows that nothing was removed",
+         textOf("hardly an event without a neighbour's in the %.1f ms before it", *edge_ns / kMs),
+         "driver: background_activity_filter_enabled: false; the first events of edges are "
+         "missing"});
+  }
+  if (const auto edge_ns = refractoryEdge_ns(statistics.pixelTimes())) {
+    findings.push_back(
+        {"refractory-filter", "events of a pixel within 0.2 ms of each other, too",
+         textOf("none within %.2f ms of the pixel's last, many from there on", *edge_ns / kMs),
+         "driver: refractory_period_enabled: false (or the bias RefrBp higher); fast "
+         "edges are missing events"});
+  }
+  checkPolarity(statistics, findings);
+  checkHotPixels(statistics, findings);
+  return findings;
+}
+
+}  // namespace fast_edi

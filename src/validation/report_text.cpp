@@ -1,0 +1,57 @@
+#include "fast_edi/validation/report_text.hpp"
+
+#include <ostream>
+#include <string>
+
+namespace fast_edi {
+namespace {
+
+void printSummary(std::ostream& out, const RecordingSurvey& survey) {
+  const FrameLog& frames = survey.frames();
+  const EventEpoch* epoch = survey.timeline().longestEpoch();
+  out << textOf("frames: %zu, every %.1f ms; exposure messages: %zu\n", frames.frames().size(),
+                static_cast<double>(frames.period_ns()) * 1e-6, frames.exposures_us().size());
+  if (epoch == nullptr || survey.statistics() == nullptr) {
+    out << "events: none\n";
+    return;
+  }
+  const double seconds = static_cast<double>(epoch->last_ns - epoch->first_ns) * 1e-9;
+  out << textOf("events: %.2f million, %.2f million/s, %.0f %% ON, sensor %dx%d\n",
+                static_cast<double>(survey.timeline().events()) * 1e-6,
+                seconds > 0.0 ? static_cast<double>(epoch->events) / seconds * 1e-6 : 0.0,
+                100.0 * static_cast<double>(survey.statistics()->on()) /
+                    static_cast<double>(survey.statistics()->on() + survey.statistics()->off()),
+                survey.statistics()->size().width, survey.statistics()->size().height);
+}
+
+}  // namespace
+
+void printFinding(std::ostream& out, const Finding& finding) {
+  out << "\n[" << finding.name << "]\n  expected: " << finding.expected
+      << "\n  found:    " << finding.found << "\n  set:      " << finding.set << "\n";
+}
+
+void printReport(std::ostream& out, const RecordingSurvey& survey, const ValidationReport& report) {
+  printSummary(out, survey);
+  for (const std::string& note : report.notes) {
+    out << "note: " << note << "\n";
+  }
+  for (const Finding& finding : report.findings) {
+    printFinding(out, finding);
+  }
+  out << "\n"
+      << (report.findings.empty() ? std::string("no findings")
+                                  : textOf("%zu findings", report.findings.size()))
+      << "; proposal:\n\n";
+  const ParameterProposal& proposal = report.proposal;
+  const bool by_topic = proposal.exposure_time_us == 0 && !survey.frames().exposures_us().empty();
+  out << "stamp_reference: " << instantName(proposal.stamp_reference) << "\n"
+      << "time_offset_us: " << proposal.time_offset_us << "\n"
+      << "exposure_time_us: " << proposal.exposure_time_us
+      << (proposal.exposure_time_us > 0 ? ""
+          : by_topic                    ? "  # the exposure topic has it"
+                                        : "  # not known: cannot be told, see the driver")
+      << "\n";
+}
+
+}  // namespace fast_edi
