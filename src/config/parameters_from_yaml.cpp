@@ -131,6 +131,9 @@ LoadedParameters parametersFromFile(const std::string& path,
 }
 
 void applyOverrides(YAML::Node& root, const std::vector<std::string>& overrides) {
+  if (!overrides.empty() && !root.IsMap() && !root.IsNull()) {
+    throw ParameterError("the configuration is " + foundText(root) + ", expected a map");
+  }
   const std::string separator = ":=";
   for (const std::string& argument : overrides) {
     const std::size_t split = argument.find(separator);
@@ -146,7 +149,7 @@ void applyOverrides(YAML::Node& root, const std::vector<std::string>& overrides)
         // A node that knows of no line, since it stands in none.
         value = YAML::Node(value.IsScalar() ? value.Scalar() : text);
       }
-    } catch (const YAML::ParserException& error) {
+    } catch (const YAML::Exception& error) {
       throw ParameterError("'" + argument + "': the value is not YAML: " + error.msg);
     }
     const std::size_t slash = key.find('/');

@@ -15,6 +15,8 @@ namespace fast_edi {
 namespace {
 
 constexpr std::size_t kTableSize = 256;
+/// Far more than a response file needs; a device that never ends must not fill the memory.
+constexpr std::size_t kMaxFileBytes = std::size_t{1} << 20;
 constexpr double kMaxDn8 = 255.0;
 constexpr double kMaxDn16 = 65535.0;
 /// 16-bit DN for one 8-bit DN: 65535 / 255.
@@ -249,10 +251,17 @@ CameraResponse CameraResponse::fromTable(const std::vector<double>& log_irradian
 }
 
 CameraResponse CameraResponse::fromFile(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) {
+  std::ifstream stream(path);
+  if (!stream) {
     throw std::runtime_error(path + ": cannot be read, expected a camera response file");
   }
+  std::string text(kMaxFileBytes + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (text.size() > kMaxFileBytes) {
+    throw std::runtime_error(path + ": larger than 1 MB, expected 256 numbers");
+  }
+  std::istringstream file(text);
   std::vector<double> values;
   std::string line;
   for (int line_number = 1; std::getline(file, line); ++line_number) {

@@ -343,6 +343,29 @@ TEST_F(ParametersFromFile, FaultsOfAFileOfBiasesNameThatFile) {
               HasSubstr("biases: found a list, expected a map or the path of a YAML file"));
 }
 
+TEST_F(ParametersFromFile, RefusesOverridesOfWhatIsNoMap) {
+  for (const char* text : {"no map", "[1, 2]"}) {
+    write("parameters.yaml", text);
+    for (const char* argument : {"lazy:=false", "biases/DiffBn_coarse:=3"}) {
+      try {
+        parametersFromFile(path_, {argument});
+        FAIL() << text;
+      } catch (const ParameterError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("expected a map"));
+      }
+    }
+  }
+}
+
+TEST_F(ParametersFromFile, ReadsNoFurtherThanAConfigurationCanBeLong) {
+  try {
+    parametersFromFile("/dev/zero");
+    FAIL();
+  } catch (const ParameterError& error) {
+    EXPECT_STREQ(error.what(), "/dev/zero: larger than 1 MB, expected a YAML file of parameters");
+  }
+}
+
 TEST_F(ParametersFromFile, OverridesReplaceValuesOfTheFile) {
   write("parameters.yaml", kLibcaerBiases);
   const LoadedParameters loaded = parametersFromFile(

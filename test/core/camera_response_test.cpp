@@ -381,6 +381,8 @@ TEST_F(ResponseFile, NamesFileLineAndRule) {
   EXPECT_THAT(
       messageOf<std::runtime_error>([] { CameraResponse::fromFile("/nonexistent/response"); }),
       HasSubstr("/nonexistent/response: cannot be read"));
+  EXPECT_THAT(messageOf<std::runtime_error>([] { CameraResponse::fromFile("/dev/zero"); }),
+              HasSubstr("/dev/zero: larger than 1 MB"));
 }
 
 }  // namespace
