@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <cstdio>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -26,6 +25,7 @@
 #include "rostest/expectations.hpp"
 #include "rostest/node_client.hpp"
 #include "rostest/recording.hpp"
+#include "support/temporary_directory.hpp"
 
 namespace fast_edi {
 namespace test {
@@ -159,14 +159,14 @@ TEST_F(Live, NamesTheFrameOfImagesThatHaveNone) {
 TEST_F(Live, DeblursABagPlayedAtRealSpeed) {
   connectTo("/patient");
   const Recording recording = makeRecording(laterSettings());
-  const std::string path = ::testing::TempDir() + "deblur_live.bag";
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("played.bag");
   writeBag(recording, "/patient", path);
   ChildProcess player({"rosbag", "play", "--quiet", "--wait-for-subscribers", path});
   EXPECT_EQ(player.wait(), 0);
   const std::vector<Output> outputs = client_->waitForOutputs(imagesOf(recording).size());
   expectOneOutputForEachFrame(recording, outputs);
   expectSameImages(outputs, deblurWithoutRos(recording, testParameters()));
-  std::remove(path.c_str());
 }
 
 TEST_F(Live, StartsAnewWhenABagIsPlayedInALoop) {
@@ -174,7 +174,8 @@ TEST_F(Live, StartsAnewWhenABagIsPlayedInALoop) {
   RecordingSettings settings = laterSettings();
   settings.frames = 20;  // longer than max_backward_jump_ms
   const Recording recording = makeRecording(settings);
-  const std::string path = ::testing::TempDir() + "deblur_live_loop.bag";
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("looped.bag");
   writeBag(recording, "/patient", path);
   const std::size_t frames = imagesOf(recording).size();
   std::vector<Output> outputs;
@@ -188,7 +189,6 @@ TEST_F(Live, StartsAnewWhenABagIsPlayedInALoop) {
   const std::vector<Output> expected = deblurWithoutRos(recording, testParameters());
   expectSameImages({outputs.begin(), second}, expected);
   expectSameImages({second, second + static_cast<std::ptrdiff_t>(frames)}, expected);
-  std::remove(path.c_str());
 }
 
 TEST_F(Live, WaitsForTheEventsOfAFrame) {

@@ -106,12 +106,13 @@ bool publisherSendsToUs(const std::string& topic) {
   return false;
 }
 
-NodeClient::NodeClient(const std::string& ns, const std::string& node, const std::string& output)
+NodeClient::NodeClient(const std::string& ns, const std::string& node, const std::string& output,
+                       const InputTopics& inputs)
     : ns_(ns), node_(node), output_(output), nh_(ns) {
-  events_ = nh_.advertise<EventArray>("events", kQueue);
-  image_ = nh_.advertise<sensor_msgs::Image>("image_raw", kQueue);
-  exposure_ = nh_.advertise<std_msgs::Int32>("exposure", kQueue);
-  camera_info_ = nh_.advertise<sensor_msgs::CameraInfo>("camera_info", kQueue);
+  events_ = nh_.advertise<EventArray>(inputs.events, kQueue);
+  image_ = nh_.advertise<sensor_msgs::Image>(inputs.image, kQueue);
+  exposure_ = nh_.advertise<std_msgs::Int32>(inputs.exposure, kQueue);
+  camera_info_ = nh_.advertise<sensor_msgs::CameraInfo>(inputs.camera_info, kQueue);
   diagnostics_ = nh_.subscribe("/diagnostics", kQueue, &NodeClient::receiveDiagnostics, this);
   spinner_.start();
 }

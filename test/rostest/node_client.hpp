@@ -28,13 +28,21 @@ constexpr std::chrono::seconds kDeadline(30);
 /// The value of a diagnostic report, "" when it has none of that name.
 std::string valueOf(const diagnostic_msgs::DiagnosticStatus& status, const std::string& key);
 
+/// Inputs of the node within its namespace.
+struct InputTopics {
+  std::string events = "events";
+  std::string image = "image_raw";
+  std::string camera_info = "camera_info";
+  std::string exposure = "exposure";
+};
+
 class NodeClient {
  public:
   /// \param ns namespace of the node's topics, e.g. "/patient"
   /// \param node name of the node, whose diagnostics are collected
   /// \param output namespace of its output within \p ns
   NodeClient(const std::string& ns, const std::string& node,
-             const std::string& output = "deblurred");
+             const std::string& output = "deblurred", const InputTopics& inputs = {});
 
   /// Subscribes to the output; on return all connections in both directions are there.
   /// \return false when the node did not subscribe in time

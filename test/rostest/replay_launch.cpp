@@ -5,7 +5,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
@@ -18,6 +17,7 @@
 #include "rostest/child_process.hpp"
 #include "rostest/expectations.hpp"
 #include "rostest/recording.hpp"
+#include "support/temporary_directory.hpp"
 
 namespace fast_edi {
 namespace test {
@@ -65,8 +65,9 @@ struct LaunchCase {
 class ReplayLaunch : public ::testing::TestWithParam<LaunchCase> {};
 
 TEST_P(ReplayLaunch, RecordsOneOutputForEachFrame) {
-  const std::string in = ::testing::TempDir() + "replay_launch_in.bag";
-  const std::string out = ::testing::TempDir() + "replay_launch_out.bag";
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.bag");
+  const std::string out = directory.file("out.bag");
   const Recording recording = makeRecording({});
   writeBag(recording, "/dvs", in);
   ChildProcess launch(
@@ -77,8 +78,6 @@ TEST_P(ReplayLaunch, RecordsOneOutputForEachFrame) {
   const std::vector<Output> outputs = readOutputs(out);
   expectOneOutputForEachFrame(recording, outputs);
   expectSameImages(outputs, deblurWithoutRos(recording, testParameters()));
-  std::remove(in.c_str());
-  std::remove(out.c_str());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ReplayLaunch,
