@@ -1,12 +1,6 @@
 // The launch files that play a recording: no frame of it may be lost, neither the first nor the
 // last. Starts roslaunch itself, with a master of its own.
 
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
-#include <cstdlib>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,27 +10,13 @@
 
 #include "rostest/child_process.hpp"
 #include "rostest/expectations.hpp"
+#include "rostest/free_port.hpp"
 #include "rostest/recording.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace fast_edi {
 namespace test {
 namespace {
-
-/// A port that nobody listens on.
-std::string freePort() {
-  const int listener = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  socklen_t size = sizeof(address);
-  auto* generic = reinterpret_cast<sockaddr*>(&address);
-  if (listener < 0 || bind(listener, generic, size) != 0 ||
-      getsockname(listener, generic, &size) != 0) {
-    throw std::runtime_error("no free port");
-  }
-  close(listener);
-  return std::to_string(ntohs(address.sin_port));
-}
 
 std::vector<Output> readOutputs(const std::string& path) {
   std::vector<sensor_msgs::ImageConstPtr> images;
