@@ -7,6 +7,8 @@
 #include <boost/shared_ptr.hpp>
 #include <opencv2/core.hpp>
 
+#include "fast_edi/ros/image_pixels.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -14,16 +16,6 @@ namespace encodings = sensor_msgs::image_encodings;
 
 /// Each event takes this much of the other two colours, so that some four events saturate.
 constexpr int kShadePerEvent_dn = 64;
-
-cv::Mat toColor(const sensor_msgs::Image& image) {
-  // cv_bridge takes 8UC1 for a matrix without colour, which here it is not.
-  if (image.encoding == encodings::TYPE_8UC1) {
-    sensor_msgs::Image mono = image;
-    mono.encoding = encodings::MONO8;
-    return cv_bridge::toCvCopy(mono, encodings::BGR8)->image;
-  }
-  return cv_bridge::toCvCopy(image, encodings::BGR8)->image;
-}
 
 void darken(std::uint8_t& channel) {
   channel = static_cast<std::uint8_t>(std::max(0, channel - kShadePerEvent_dn));
@@ -53,8 +45,8 @@ void ComparisonView::clear() {
 sensor_msgs::ImagePtr ComparisonView::draw(const sensor_msgs::Image& input,
                                            const sensor_msgs::Image& output,
                                            const ExposureInterval& window) const {
-  const cv::Mat blurry = toColor(input);
-  const cv::Mat latent = toColor(output);
+  const cv::Mat blurry = colorPixels(input);
+  const cv::Mat latent = colorPixels(output);
   cv::Mat drawn(blurry.size(), CV_8UC3, cv::Scalar::all(255));
   for (const std::vector<std::uint8_t>& array : arrays_) {
     const WireEvents events{array.data(), array.size() / kWireEventBytes};

@@ -20,7 +20,6 @@
 
 #include <cv_bridge/cv_bridge.h>
 #include <diagnostic_msgs/DiagnosticArray.h>
-#include <sensor_msgs/image_encodings.h>
 #include <boost/program_options.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -32,6 +31,7 @@
 #include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/comparison_view.hpp"
 #include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/ros/image_pixels.hpp"
 #include "fast_edi/ros/topic_names.hpp"
 #include "fast_edi/tags/tag_detector.hpp"
 
@@ -61,7 +61,7 @@ struct Arguments {
 
 /// A frame before, after, or as it truly was.
 struct View {
-  cv::Mat mono8;
+  cv::Mat mono8;  ///< may share the message's memory
   double sharpness = 0.0;
   std::size_t tags = 0;
   std::optional<double> psnr_db;  ///< against the truth
@@ -92,15 +92,6 @@ struct PendingFrame {
   std::size_t number = 0;
   bool on_sheet = false;
 };
-
-cv::Mat toMono8(const sensor_msgs::Image& message) {
-  // cv_bridge takes 8UC1 for a matrix without colour, which here it is not.
-  sensor_msgs::Image image = message;
-  if (image.encoding == sensor_msgs::image_encodings::TYPE_8UC1) {
-    image.encoding = sensor_msgs::image_encodings::MONO8;
-  }
-  return cv_bridge::toCvCopy(image, sensor_msgs::image_encodings::MONO8)->image;
-}
 
 double milliseconds(std::int64_t duration_ns) {
   return static_cast<double>(duration_ns) / kNanosecondsInMillisecond;
@@ -304,7 +295,7 @@ View Report::look(const cv::Mat& mono8, const cv::Mat& truth) const {
 
 cv::Mat Report::truthAt(const ros::Time& stamp) const {
   const auto found = truth_.find(stamp);
-  return found == truth_.end() ? cv::Mat() : toMono8(*found->second);
+  return found == truth_.end() ? cv::Mat() : greyPixels(*found->second);
 }
 
 void Report::settleOldest() {
@@ -319,8 +310,8 @@ void Report::settleOldest() {
     frames_as_offline_ += live->data == frame.offline.image->data ? 1 : 0;
     if (frame.offline.frame.input.supported) {
       const cv::Mat truth = truthAt(stamp);
-      const View before = look(toMono8(*input.message), truth);
-      const View after = look(toMono8(*live), truth);
+      const View before = look(greyPixels(*input.message), truth);
+      const View after = look(greyPixels(*live), truth);
       before_.add(before);
       after_.add(after);
       View true_view;
@@ -358,10 +349,11 @@ void Report::addRow(const PendingFrame& frame, const View& before, const View& a
   } else {
     row.label += std::string("passed through, ") + toString(output.pass_reason);
   }
-  row.panels = {before.mono8, frame.events, after.mono8};
+  // Copies: the frames share the memory of messages that will be gone.
+  row.panels = {before.mono8.clone(), frame.events, after.mono8.clone()};
   row.captions = {caption(before), "", caption(after)};
   if (!truth.mono8.empty()) {
-    row.panels.push_back(truth.mono8);
+    row.panels.push_back(truth.mono8.clone());
     row.captions.push_back(caption(truth));
   }
   gain_ = std::min(gain_, displayGain(before.mono8));
