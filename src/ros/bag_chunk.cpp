@@ -10,8 +10,12 @@
 namespace fast_edi {
 namespace {
 
-/// Size of the output when the chunk's header does not say it: grown by doubling from here.
-constexpr std::size_t kFirstGuessBytes = 1 << 22;
+/// Room for the output at first, unless the chunk's header says that less will do; doubled when it
+/// is full. So a damaged size field takes no more memory than the data call for.
+constexpr std::size_t kFirstRoomBytes = 1 << 22;
+
+/// Damaged data are not decompressed further than this. Chunks of rosbag have 768 kB by default.
+constexpr std::size_t kMaxUnstatedBytes = std::size_t{1} << 28;
 
 /// libbz2 counts in 32 bits.
 constexpr std::size_t kMaxStepBytes = std::size_t{1} << 30;
@@ -87,18 +91,20 @@ class Lz4 {
 template <typename Decompressor>
 ChunkBytes run(const std::uint8_t* data, std::size_t size, std::size_t full_size) {
   Decompressor decompressor(data, size);
-  std::size_t capacity = full_size > 0 ? full_size : kFirstGuessBytes;
+  // One more than stated, so that the end of the data shows.
+  const std::size_t limit = std::max(full_size + 1, kMaxUnstatedBytes);
+  std::size_t capacity = full_size > 0 ? std::min(full_size, kFirstRoomBytes) : kFirstRoomBytes;
   ChunkBytes chunk;
-  // Not initialised: a damaged size field must not make gigabytes of zeros.
+  // Not initialised, as a vector would be: it is written at once.
   chunk.data.reset(new std::uint8_t[capacity]);
   bool done = false;
   bool whole = false;
-  while (!done) {
+  while (!done && chunk.size < limit) {
     if (chunk.size == capacity) {
-      std::unique_ptr<std::uint8_t[]> larger(new std::uint8_t[2 * capacity]);
+      capacity = std::min(2 * capacity, limit);
+      std::unique_ptr<std::uint8_t[]> larger(new std::uint8_t[capacity]);
       std::memcpy(larger.get(), chunk.data.get(), chunk.size);
       chunk.data = std::move(larger);
-      capacity *= 2;
     }
     chunk.size += decompressor.decompress(
         chunk.data.get() + chunk.size, std::min(capacity - chunk.size, kMaxStepBytes), done, whole);

@@ -1,9 +1,24 @@
 #include "fast_edi/ros/bag_reader.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
+#include "fast_edi/core/types.hpp"
+
 namespace fast_edi {
+
+namespace {
+
+/// A record time as it may be used: damage leaves nanoseconds of more than a second, which roscpp
+/// refuses here and carries there.
+ros::Time soundTime(std::uint32_t sec, std::uint32_t nsec) {
+  constexpr std::uint32_t kLastNanosecond = kNanosecondsPerSecond - 1;
+  return {sec, std::min(nsec, kLastNanosecond)};
+}
+
+}  // namespace
 
 BagReader::BagReader(const std::string& path) : file_(path), index_(buildBagIndex(file_, path)) {}
 
@@ -35,10 +50,13 @@ ros::Duration BagReader::duration() const {
     return {};
   }
   const auto time = [](const BagIndexEntry& entry) {
-    return ros::Time(static_cast<std::uint32_t>(entry.time >> 32),
+    return soundTime(static_cast<std::uint32_t>(entry.time >> 32),
                      static_cast<std::uint32_t>(entry.time));
   };
-  return time(index_.entries.back()) - time(index_.entries.front());
+  const ros::Time first = time(index_.entries.front());
+  const ros::Time last = time(index_.entries.back());
+  // A ros::Duration holds half of what lies between two times.
+  return last.sec - first.sec < INT32_MAX ? last - first : ros::DURATION_MAX;
 }
 
 std::string BagReader::compression() const {
@@ -79,8 +97,8 @@ bool BagReader::readMessage(const ByteSource& source, std::uint64_t offset, BagM
   message.connection = &connection->second;
   message.size = record->data_size;
   // The record's own time: seconds in the low half, nanoseconds in the high one.
-  message.time.sec = static_cast<std::uint32_t>(*time);
-  message.time.nsec = static_cast<std::uint32_t>(*time >> 32);
+  message.time =
+      soundTime(static_cast<std::uint32_t>(*time), static_cast<std::uint32_t>(*time >> 32));
   return true;
 }
 

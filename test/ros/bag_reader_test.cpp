@@ -303,5 +303,41 @@ TEST(BagReaderErrorTest, ReadsABagWithoutMessages) {
   EXPECT_TRUE(reader.damage().empty());
 }
 
+TEST(BagReaderDamage, LeavesRecordTimesThatCanBeUsed) {
+  const TemporaryDirectory directory;
+  std::string bytes = contents(makeBag(directory, Uncompressed));
+  // Without its index the times are those of the messages.
+  bytes.resize(bytes.rfind("op=\x07"));
+  const std::string field = "time=";
+  std::size_t at = bytes.find(field, bytes.find("op=\x05"));
+  for (int damaged = 0; damaged < 3; ++damaged) {
+    std::fill_n(bytes.begin() + static_cast<long>(at + field.size()), 8, '\xff');
+    at = bytes.find(field, at + 1);
+  }
+  // Index records behind the chunks would tell the old times.
+  for (at = bytes.find("op=\x04"); at != std::string::npos; at = bytes.find("op=\x04", at)) {
+    bytes[at + 3] = '\x7f';
+  }
+  const std::string path = directory.file("damaged.bag");
+  write(path, bytes);
+  BagReader reader(path);
+  EXPECT_EQ(reader.duration(), ros::DURATION_MAX);
+  const std::vector<Read> read = readAll(reader);
+  ASSERT_GT(read.size(), 3u);
+  EXPECT_EQ(read.back().time, ros::Time(UINT32_MAX, 999'999'999));
+}
+
+TEST(ChunkDecompression, SaysThatLessIsThereThanStated) {
+  // An empty bzip2 stream.
+  const std::vector<std::uint8_t> empty{'B',  'Z',  'h',  '9', 0x17, 0x72, 0x45,
+                                        0x38, 0x50, 0x90, 0,   0,    0,    0};
+  for (const std::size_t stated : {std::size_t{1}, std::size_t{0xffff'ffff}}) {
+    const ChunkBytes chunk = decompressChunk("bz2", empty.data(), empty.size(), stated);
+    EXPECT_EQ(chunk.size, 0u);
+    EXPECT_FALSE(chunk.complete);
+  }
+  EXPECT_TRUE(decompressChunk("bz2", empty.data(), empty.size(), 0).complete);
+}
+
 }  // namespace
 }  // namespace fast_edi
