@@ -76,9 +76,14 @@ bool BagPipeline::use(const BagMessage& message) {
       case Use::kExposure:
         deblurrer_.addExposure(deserialise<std_msgs::Int32>(message)->data, now_ns_);
         break;
-      case Use::kCameraInfo:
-        sink_.setCameraInfo(deserialise<sensor_msgs::CameraInfo>(message));
+      case Use::kCameraInfo: {
+        const sensor_msgs::CameraInfoConstPtr info = deserialise<sensor_msgs::CameraInfo>(message);
+        if (!cameraInfoFault(*info).empty()) {
+          return false;
+        }
+        sink_.setCameraInfo(info);
         break;
+      }
       case Use::kNone:
         break;
     }

@@ -246,7 +246,15 @@ void DeblurNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
 }
 
 void DeblurNode::receiveCameraInfo(const sensor_msgs::CameraInfoConstPtr& message) {
-  whileListening([&] { sink_->setCameraInfo(message); });
+  whileListening([&] {
+    const std::string fault = cameraInfoFault(*message);
+    if (!fault.empty()) {
+      ++totals_.camera_infos_refused;
+      totals_.camera_info_refusal = fault;
+      return;
+    }
+    sink_->setCameraInfo(message);
+  });
 }
 
 void DeblurNode::receiveExposure(const std_msgs::Int32ConstPtr& message) {

@@ -1,5 +1,7 @@
 #include "fast_edi/ros/message_conversion.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -105,6 +107,21 @@ MutableImageView viewOf(sensor_msgs::Image& image, PixelFormat format) {
   view.step = image.step;
   view.format = format;
   return view;
+}
+
+std::string cameraInfoFault(const sensor_msgs::CameraInfo& info) {
+  const auto fault = [](const char* name, const auto& values) -> std::string {
+    const bool finite = std::all_of(values.begin(), values.end(),
+                                    [](double value) { return std::isfinite(value); });
+    return finite ? "" : std::string(name) + " holds a number that is not finite";
+  };
+  for (const std::string& found :
+       {fault("D", info.D), fault("K", info.K), fault("R", info.R), fault("P", info.P)}) {
+    if (!found.empty()) {
+      return found;
+    }
+  }
+  return {};
 }
 
 sensor_msgs::CameraInfoPtr makeCameraInfo(const sensor_msgs::CameraInfo* latest,

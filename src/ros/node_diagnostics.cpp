@@ -79,6 +79,9 @@ void NodeDiagnostics::collectComplaints(const NodeSnapshot& now) {
 
   complain("malformed", now.frames_malformed, before_.frames_malformed,
            "image(s)" + on_image + " refused: " + now.malformed_reason);
+  complain("camera info", now.camera_infos_refused, before_.camera_infos_refused,
+           "camera_info(s) beside " + topics_.image +
+               " refused, the one before kept: " + now.camera_info_refusal);
   for (std::size_t i = 0; i < kPassReasonCount; ++i) {
     const auto reason = static_cast<PassReason>(i);
     if (reason == PassReason::kPassthroughParameter) {
@@ -208,6 +211,7 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
   }
   status.add("Frames without output", c.frames_suppressed);
   status.add("Frames refused", now_.frames_malformed);
+  status.add("Camera infos refused", now_.camera_infos_refused);
   status.add("Frame time jumps", c.frame_time_jumps);
   status.add("Events in", c.events_in);
   status.add("Events late", c.events_late);

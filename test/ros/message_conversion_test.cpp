@@ -1,5 +1,6 @@
 #include "fast_edi/ros/message_conversion.hpp"
 
+#include <limits>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -146,6 +147,18 @@ TEST(MakeCameraInfo, SaysUncalibratedWhenNoneWasReceived) {
   EXPECT_EQ(info->height, 3u);
   EXPECT_EQ(info->K[0], 0.0);
   EXPECT_EQ(info->header.stamp, ros::Time(5, 6));
+}
+
+TEST(CameraInfoFault, FindsNumbersThatAreNotFinite) {
+  sensor_msgs::CameraInfo info;
+  EXPECT_EQ(cameraInfoFault(info), "");  // not calibrated
+  info.D = {0.1, 0.2};
+  info.K[0] = 200.0;
+  EXPECT_EQ(cameraInfoFault(info), "");
+  info.P[3] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(cameraInfoFault(info), "P holds a number that is not finite");
+  info.D[1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(cameraInfoFault(info), "D holds a number that is not finite");
 }
 
 }  // namespace

@@ -34,6 +34,10 @@ sensor_msgs::ImagePtr makeImageLike(const sensor_msgs::Image& input, PixelFormat
 /// Writable view of an image made by makeImageLike().
 MutableImageView viewOf(sensor_msgs::Image& image, PixelFormat format);
 
+/// What is wrong with a calibration; empty if nothing is. Zero K, which means "not calibrated", is
+/// no fault; numbers that are not finite are: they would be copied to every output.
+std::string cameraInfoFault(const sensor_msgs::CameraInfo& info);
+
 /// The camera_info that belongs to \p image: a copy of \p latest, or, with none received yet, zero
 /// K and the image's size; stamp and frame_id are the image's.
 sensor_msgs::CameraInfoPtr makeCameraInfo(const sensor_msgs::CameraInfo* latest,

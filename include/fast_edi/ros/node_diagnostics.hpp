@@ -33,15 +33,17 @@ struct NodeSnapshot {
   DeblurStatus status;
   std::uint64_t frames_out = 0;
   std::uint64_t frames_malformed = 0;
+  std::uint64_t camera_infos_refused = 0;
   std::uint64_t bias_updates_refused = 0;
   std::uint64_t reconfigurations = 0;  ///< requests to change parameters
   std::uint64_t values_refused = 0;    ///< in those requests
   std::uint64_t internal_errors = 0;
-  std::string malformed_reason;    ///< of the last one
-  std::string unsupported_reason;  ///< of the last one
-  std::string bias_refusal;        ///< of the last one
-  std::string value_refusal;       ///< of the last one
-  std::string internal_error;      ///< of the last one
+  std::string malformed_reason;     ///< of the last one
+  std::string unsupported_reason;   ///< of the last one
+  std::string camera_info_refusal;  ///< of the last one
+  std::string bias_refusal;         ///< of the last one
+  std::string value_refusal;        ///< of the last one
+  std::string internal_error;       ///< of the last one
   ContrastThresholds thresholds;
   std::string contrast_origin;
 };
