@@ -82,7 +82,7 @@ BagDeblurrer::BagDeblurrer(BagReader& reader, BagWriter* writer, const TopicName
 BagDeblurReport BagDeblurrer::run() {
   const auto start = std::chrono::steady_clock::now();
   BagMessage message;
-  while (reader_.next(message)) {
+  while (!(report_.interrupted = stop_requested_ && stop_requested_()) && reader_.next(message)) {
     if (writer_ != nullptr) {
       writer_->copy(message);
     }

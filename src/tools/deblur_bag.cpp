@@ -1,6 +1,7 @@
 /// \file
 /// `deblur_bag`: a recording in, the same recording with deblurred frames out, or a film of it.
 
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <optional>
@@ -26,9 +27,27 @@ namespace po = boost::program_options;
 constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kInputIncomplete = 2;
+constexpr int kInterrupted = 128;  ///< plus the number of the signal, as shells have it
 /// More notes than this help nobody.
 constexpr std::size_t kMaxDamageNotes = 10;
 constexpr int kDefaultFilmRate_hz = 500;
+
+/// The signal that asked to stop, 0 before. The only thing that a signal's handler may touch.
+volatile std::sig_atomic_t interrupting_signal = 0;
+
+extern "C" void noteSignal(int signal) {
+  interrupting_signal = signal;
+}
+
+void handleSignals() {
+  struct sigaction stop = {};
+  stop.sa_handler = noteSignal;
+  stop.sa_flags = SA_RESETHAND;  // a second one ends the program at once
+  sigaction(SIGINT, &stop, nullptr);
+  sigaction(SIGTERM, &stop, nullptr);
+  // A file larger than the process may write: an error that can be reported, not the end.
+  std::signal(SIGXFSZ, SIG_IGN);
+}
 
 struct Arguments {
   std::string input;
@@ -84,8 +103,11 @@ void printHelp(const po::options_description& options) {
          "A film shows latent images at a fixed rate, between exposures too where events bridge\n"
          "the gap; where they do not, the nearest image is held.\n\n"
       << options
-      << "\nExit code: 0 done; 1 failed, no output; 2 the input was cut short or damaged: all "
-         "of it that\ncould be read is in the output, which is complete and indexed.\n";
+      << "\nThe output grows as OUT.bag.active and gets its name when it is complete. What a full "
+         "disk or\nkill -9 leaves of it can be opened after `rosbag reindex`.\n"
+         "\nExit code: 0 done; 1 failed, no output; 2 the input was cut short or damaged: all "
+         "of it that\ncould be read is in the output, which is complete and indexed; 130, 143 "
+         "interrupted by Ctrl-C\nor SIGTERM: the output is complete and indexed up to there.\n";
 }
 
 /// \return false when help was asked for and given
@@ -123,6 +145,14 @@ fast_edi::LoadedParameters loadParameters(const Arguments& arguments) {
   YAML::Node root(YAML::NodeType::Map);
   fast_edi::applyOverrides(root, arguments.overrides);
   return fast_edi::parametersFromYaml(root, ".");
+}
+
+void printInterruption(const fast_edi::BagReader& reader, const fast_edi::BagDeblurReport& report) {
+  if (report.interrupted) {
+    std::cerr << "interrupted by " << (interrupting_signal == SIGINT ? "SIGINT" : "SIGTERM")
+              << " after " << report.messages << " of " << reader.messageCount()
+              << " messages: the output is closed and ends there\n";
+  }
 }
 
 void printDamage(const fast_edi::BagReader& reader, const fast_edi::BagDeblurReport& report,
@@ -192,6 +222,7 @@ int run(const Arguments& arguments) {
         }
       });
     }
+    deblurrer.setStopRequest([] { return interrupting_signal != 0; });
     report = deblurrer.run();
   }
   if (writer) {
@@ -213,12 +244,17 @@ int run(const Arguments& arguments) {
     std::cerr << "warning: " << report.malformed_messages
               << " messages contradict themselves and were not used\n";
   }
+  printInterruption(reader, report);
+  if (report.interrupted) {
+    return kInterrupted + interrupting_signal;
+  }
   return report.incomplete() ? kInputIncomplete : kDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  handleSignals();
   try {
     Arguments arguments;
     return parseArguments(argc, argv, arguments) ? run(arguments) : kDone;

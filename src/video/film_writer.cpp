@@ -43,6 +43,17 @@ std::string activePath(const std::string& path) {
   return fs::path(path).replace_extension(".active" + extensionOf(path)).string();
 }
 
+/// Why nothing more can be written to \p path, which OpenCV does not tell; empty if something can.
+std::string writingFault(const std::string& path) {
+  constexpr std::size_t kMoreThanIsLeftOver = 1 << 16;  // the last block of a full disk, say
+  errno = 0;
+  std::ofstream file(path, std::ios::binary | std::ios::app);
+  const std::string block(kMoreThanIsLeftOver, '\0');
+  file.write(block.data(), static_cast<std::streamsize>(block.size()));
+  file.flush();
+  return file ? "" : std::strerror(errno);
+}
+
 cv::Mat pictureOf(const sensor_msgs::Image& image) {
   // cv_bridge takes 8UC1 for a matrix without colour, which here it is not.
   if (image.encoding == encodings::TYPE_8UC1) {
@@ -67,10 +78,11 @@ FilmWriter::FilmWriter(const std::string& path, int rate_hz, bool overwrite)
   if (fs::is_directory(path_)) {
     throw FilmError("cannot write " + path_ + ": it is a directory");
   }
-  // OpenCV would not say why.
-  errno = 0;
-  if (!std::ofstream(active_path_)) {
-    throw FilmError("cannot write " + path_ + ": " + std::strerror(errno));
+  const std::string fault = writingFault(active_path_);
+  if (!fault.empty()) {
+    std::error_code ignored;  // it may not even be there
+    fs::remove(active_path_, ignored);
+    throw FilmError("cannot write " + path_ + ": " + fault);
   }
   unfinished_ = true;
 }
@@ -179,8 +191,10 @@ void FilmWriter::close() {
   cv::VideoCapture written(active_path_, cv::CAP_FFMPEG);
   const auto images = static_cast<std::uint64_t>(written.get(cv::CAP_PROP_FRAME_COUNT));
   if (!written.isOpened() || images != report_.images) {
-    throw FilmError("cannot write " + path_ + ": the film cannot be read back with its " +
-                    std::to_string(report_.images) + " images; is the disk full?");
+    const std::string fault = writingFault(active_path_);
+    throw FilmError("cannot write " + path_ + ": " + fault + (fault.empty() ? "" : "; ") +
+                    "the film cannot be read back with its " + std::to_string(report_.images) +
+                    " images");
   }
   written.release();
   std::error_code error;

@@ -43,11 +43,15 @@ int ChildProcess::wait() {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-void ChildProcess::interrupt() {
+void ChildProcess::send(int signal) {
   if (pid_ > 0) {
-    kill(pid_, SIGINT);
-    wait();
+    kill(pid_, signal);
   }
+}
+
+void ChildProcess::interrupt() {
+  send(SIGINT);
+  wait();
 }
 
 }  // namespace test

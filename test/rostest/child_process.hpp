@@ -21,6 +21,8 @@ class ChildProcess {
 
   /// Waits for its end. \return the exit status, -1 when it did not exit by itself
   int wait();
+  /// Sends \p signal, unless it has ended.
+  void send(int signal);
   /// Interrupts it like Ctrl-C and waits.
   void interrupt();
 

@@ -29,6 +29,7 @@ struct BagDeblurReport {
   std::uint64_t malformed_messages = 0;  ///< on a topic of ours, but unreadable: copied, not used
   double seconds = 0.0;                  ///< wall clock
   ros::Time last_record_time;            ///< of the last readable message
+  bool interrupted = false;              ///< ended before the end of the input, because asked to
   std::vector<BagDamage> damage;
 
   /// Events per wall-clock second [1/us].
@@ -45,6 +46,7 @@ class BagDeblurrer {
   /// \param done, total messages
   using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
   using OutputHandler = std::function<void(const BagPipeline::Output& output)>;
+  using StopRequest = std::function<bool()>;
 
   /// \param reader must outlive this object
   /// \param writer must outlive this object; null: no bag is written
@@ -54,6 +56,10 @@ class BagDeblurrer {
 
   /// Shows every output to \p handler as well, which may throw: run() then ends with that.
   void setOutputHandler(OutputHandler handler) { output_handler_ = std::move(handler); }
+
+  /// Asks \p requested before each message; once it says yes, run() behaves as at the end of the
+  /// bag.
+  void setStopRequest(StopRequest requested) { stop_requested_ = std::move(requested); }
 
   /// Copies every message and adds the deblurred frames, each behind the message that completed it
   /// and with the same record time. At the end of the bag waiting frames are closed with what has
@@ -73,6 +79,7 @@ class BagDeblurrer {
   const bool write_latent_;
   const Progress progress_;
   OutputHandler output_handler_;
+  StopRequest stop_requested_;
   BagPipeline pipeline_;
   BagDeblurReport report_;
 };
