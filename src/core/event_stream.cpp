@@ -29,9 +29,11 @@ void EventStream::take(const WireEvents& events, SensorSize size, std::uint32_t 
   ++counters_.event_arrays;
   counters_.events_in += events.count;
   const bool refused = !isValid(size);
-  const bool after_gap = sequence_gaps_.isAfterGap(sequence);
-  counters_.event_array_gaps += after_gap ? 1 : 0;
-  arrays_missing_ = arrays_missing_ || after_gap || (refused && !events.empty());
+  const SequenceStep step = sequence_gaps_.step(sequence);
+  counters_.event_array_gaps += step == SequenceStep::kGap ? 1 : 0;
+  counters_.event_restarts += step == SequenceStep::kRestart ? 1 : 0;
+  arrays_missing_ =
+      arrays_missing_ || step != SequenceStep::kNothingMissing || (refused && !events.empty());
   markMissingArrays();
   if (refused) {
     ++counters_.event_arrays_refused;

@@ -108,6 +108,8 @@ void NodeDiagnostics::collectComplaints(const NodeSnapshot& now) {
            "event(s)" + on_events + " dropped: a time jump that the next array did not confirm");
   complain("array gap", c.event_array_gaps, b.event_array_gaps,
            "hole(s) in header.seq" + on_events + ": arrays were lost on the way");
+  complain("event restart", c.event_restarts, b.event_restarts,
+           "restart(s) of the publisher" + on_events + ": no events in between");
   complain("event jump", c.event_time_jumps, b.event_time_jumps,
            "time jump(s) of the events" + on_events + ": started anew");
   complain("frame jump", c.frame_time_jumps, b.frame_time_jumps,
@@ -220,6 +222,7 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
   status.add("Events overflowed", c.events_overflowed);
   status.add("Events refused", c.events_refused);
   status.add("Event array gaps", c.event_array_gaps);
+  status.add("Event publisher restarts", c.event_restarts);
   status.add("Event time jumps", c.event_time_jumps);
   status.add("Sensor size changes", c.size_changes);
   status.add("Exposures in", c.exposures_in);

@@ -115,6 +115,18 @@ TEST_F(EventStreamTest, AHoleReachesOverEmptyArrays) {
   EXPECT_TRUE(stream.covers({kStart + 40 * kMs, kStart + 50 * kMs}));
 }
 
+TEST_F(EventStreamTest, APublisherThatStartsAnewLeavesAHoleThatIsNoGap) {
+  takeAs(7, {kStart});
+  takeAs(8, {kStart + 10 * kMs});
+  takeAs(0, {kStart + 500 * kMs});
+  takeAs(1, {kStart + 510 * kMs});
+  EXPECT_EQ(counters.event_restarts, 1u);
+  EXPECT_EQ(counters.event_array_gaps, 0u);
+  EXPECT_TRUE(stream.covers({kStart, kStart + 10 * kMs}));
+  EXPECT_FALSE(stream.covers({kStart + 490 * kMs, kStart + 505 * kMs}));
+  EXPECT_TRUE(stream.covers({kStart + 500 * kMs, kStart + 510 * kMs}));
+}
+
 TEST_F(EventStreamTest, ASequenceThatStaysOrFallsMakesNoHole) {
   takeAs(7, {kStart});
   takeAs(7, {kStart + 10 * kMs});

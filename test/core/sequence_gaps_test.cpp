@@ -1,62 +1,67 @@
 #include "fast_edi/core/sequence_gaps.hpp"
 
-#include <gtest/gtest.h>
+#include <cstdint>
+#include <initializer_list>
+#include <vector>
+
+#include <gmock/gmock.h>
 
 namespace fast_edi {
 namespace {
 
-TEST(SequenceGaps, ConsecutiveNumbersHaveNoGap) {
-  SequenceGaps gaps;
-  for (std::uint32_t sequence : {7u, 8u, 9u, 10u}) {
-    EXPECT_FALSE(gaps.isAfterGap(sequence)) << sequence;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using Step = SequenceStep;
+
+std::vector<Step> stepsOf(SequenceGaps& gaps, std::initializer_list<std::uint32_t> sequence) {
+  std::vector<Step> steps;
+  for (const std::uint32_t number : sequence) {
+    steps.push_back(gaps.step(number));
   }
+  return steps;
+}
+
+std::vector<Step> stepsOf(std::initializer_list<std::uint32_t> sequence) {
+  SequenceGaps gaps;
+  return stepsOf(gaps, sequence);
+}
+
+TEST(SequenceGaps, ConsecutiveNumbersHaveNoGap) {
+  EXPECT_THAT(stepsOf({7, 8, 9, 10}), Each(Step::kNothingMissing));
 }
 
 TEST(SequenceGaps, ANumberLeftOutOfAGrowingSequenceIsAGap) {
-  SequenceGaps gaps;
-  gaps.isAfterGap(1);
-  gaps.isAfterGap(2);
-  EXPECT_TRUE(gaps.isAfterGap(4));
-  EXPECT_FALSE(gaps.isAfterGap(5));
-  EXPECT_TRUE(gaps.isAfterGap(100));
+  EXPECT_THAT(stepsOf({1, 2, 4, 5, 100}),
+              ElementsAre(Step::kNothingMissing, Step::kNothingMissing, Step::kGap,
+                          Step::kNothingMissing, Step::kGap));
 }
 
 TEST(SequenceGaps, TheFirstStepSaysNothing) {
-  SequenceGaps gaps;
-  EXPECT_FALSE(gaps.isAfterGap(5));
-  EXPECT_FALSE(gaps.isAfterGap(9));
-  EXPECT_FALSE(gaps.isAfterGap(10));
+  EXPECT_THAT(stepsOf({5, 9, 10}), Each(Step::kNothingMissing));
 }
 
 TEST(SequenceGaps, NumbersThatDoNotGrowSayNothing) {
-  SequenceGaps gaps;
-  for (std::uint32_t sequence : {0u, 0u, 0u, 5u, 5u, 3u, 0u}) {
-    EXPECT_FALSE(gaps.isAfterGap(sequence)) << sequence;
-  }
+  EXPECT_THAT(stepsOf({0, 0, 0, 5, 5, 3, 0}), Each(Step::kNothingMissing));
 }
 
 TEST(SequenceGaps, APublisherThatStartsAnewIsNoGap) {
   SequenceGaps gaps;
-  for (std::uint32_t sequence : {41u, 42u, 43u, 0u, 1u, 2u}) {
-    EXPECT_FALSE(gaps.isAfterGap(sequence)) << sequence;
-  }
-  EXPECT_TRUE(gaps.isAfterGap(4));
+  EXPECT_THAT(stepsOf(gaps, {41, 42, 43}), Each(Step::kNothingMissing));
+  EXPECT_EQ(gaps.step(0), Step::kRestart);
+  EXPECT_THAT(stepsOf(gaps, {1, 2}), Each(Step::kNothingMissing));
+  EXPECT_EQ(gaps.step(4), Step::kGap);
+  EXPECT_EQ(gaps.step(1), Step::kRestart) << "as a publisher in Python begins";
 }
 
 TEST(SequenceGaps, WrappingAroundIsNoGap) {
-  SequenceGaps gaps;
-  for (std::uint32_t sequence : {0xfffffffeu, 0xffffffffu, 0u, 1u}) {
-    EXPECT_FALSE(gaps.isAfterGap(sequence)) << sequence;
-  }
+  EXPECT_THAT(stepsOf({0xfffffffe, 0xffffffff, 0, 1}), Each(Step::kNothingMissing));
 }
 
 TEST(SequenceGaps, RestartForgetsTheLastNumber) {
   SequenceGaps gaps;
-  gaps.isAfterGap(1);
-  gaps.isAfterGap(2);
+  stepsOf(gaps, {10, 11});
   gaps.restart();
-  EXPECT_FALSE(gaps.isAfterGap(10));
-  EXPECT_FALSE(gaps.isAfterGap(20));
+  EXPECT_THAT(stepsOf(gaps, {1, 20}), Each(Step::kNothingMissing));
 }
 
 }  // namespace

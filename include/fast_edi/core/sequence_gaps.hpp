@@ -7,18 +7,30 @@
 
 namespace fast_edi {
 
-/// A sequence number that is larger than the last one plus one tells of a gap, provided that the
-/// numbers were growing. Equal, zero or smaller ones say nothing: within a nodelet manager every
-/// message may carry the same number, and a publisher that starts anew begins from 0.
+/// What a sequence number tells about messages between the last one and this one.
+enum class SequenceStep {
+  kNothingMissing,  ///< or nothing known
+  kGap,             ///< messages were lost on the way
+  kRestart,         ///< the publisher started anew: there is a time in which it published nothing
+};
+
+/// Numbers that were growing and leave some out tell of a gap, those that were growing and fall of
+/// a publisher that started anew, from 0 or 1. Otherwise they say nothing: within a nodelet manager
+/// every message may carry the same number.
 class SequenceGaps {
  public:
-  /// \return true when messages are missing between the last call and this one
-  bool isAfterGap(std::uint32_t sequence) {
+  SequenceStep step(std::uint32_t sequence) {
     const bool grows = last_ && sequence > *last_;
-    const bool gap = grows && growing_ && sequence - *last_ > 1;
+    const bool wraps = last_ && *last_ == UINT32_MAX;
+    SequenceStep step = SequenceStep::kNothingMissing;
+    if (growing_ && grows && sequence - *last_ > 1) {
+      step = SequenceStep::kGap;
+    } else if (growing_ && sequence < *last_ && !wraps) {
+      step = SequenceStep::kRestart;
+    }
     growing_ = grows;
     last_ = sequence;
-    return gap;
+    return step;
   }
   void restart() {
     last_.reset();
