@@ -51,7 +51,7 @@ void addEvents(const RecordingSettings& settings, std::int64_t end_ns, std::mt19
   std::uniform_int_distribution<int> y(0, settings.size.height - 1);
   std::bernoulli_distribution on(0.5);
   std::int64_t t_ns = settings.start_ns;
-  std::uint32_t seq = 0;
+  std::uint32_t seq = settings.first_sequence;
   while (t_ns < end_ns) {
     auto array = boost::make_shared<EventArray>();
     const std::int64_t array_end_ns = t_ns + settings.array_period_ns;

@@ -44,6 +44,7 @@ struct RecordingSettings {
   std::int64_t array_period_ns = 33 * kNanosecondsPerMillisecond;
   std::int64_t event_period_ns = 20 * kNanosecondsPerMicrosecond;
   std::uint32_t seed = 1;
+  std::uint32_t first_sequence = 0;  ///< of the event arrays
 };
 
 /// Random events at a steady rate, from start_ns until well after the last exposure; frames with

@@ -1,0 +1,44 @@
+/// \file
+/// A camera that never ends.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <thread>
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+#include "rostest/recording.hpp"
+
+namespace fast_edi {
+namespace test {
+
+/// Publishes made-up recordings one behind the other, in a thread of its own, as a driver would:
+/// events, frames, exposures and calibrations whose times go on from one to the next.
+class MadeUpCamera {
+ public:
+  /// \param ns namespace of the topics
+  /// \param settings of the first recording; `frames` is the length of each
+  /// \param haste how much faster than the clock on the wall recording time passes
+  MadeUpCamera(const std::string& ns, RecordingSettings settings, int haste);
+  ~MadeUpCamera();
+  MadeUpCamera(const MadeUpCamera&) = delete;
+  MadeUpCamera& operator=(const MadeUpCamera&) = delete;
+
+ private:
+  void run(RecordingSettings settings, int haste);
+  void publish(const Arrival& arrival);
+
+  ros::NodeHandle nh_;
+  ros::Publisher events_;
+  ros::Publisher image_;
+  ros::Publisher exposure_;
+  ros::Publisher camera_info_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace test
+}  // namespace fast_edi
