@@ -21,6 +21,8 @@ constexpr double kBreakOff = 2.0;
 constexpr double kCutOff = 0.25;
 constexpr std::size_t kTrend = 7;  ///< bins from the edge to where the trend is taken
 constexpr std::uint64_t kEnough = 60;
+constexpr double kLevel = 0.45;
+constexpr double kNothing = 0.03;
 /// A set-in: at most this part before the edge.
 constexpr double kSetIn = 0.03;
 /// Events in the first bin behind it, of those in three.
@@ -43,6 +45,19 @@ double fall(const TimeHistogram& times, std::size_t bin) {
       std::min(times.sum(bin - kSide, bin), times.sum(bin - 2 * kSide, bin - kSide));
   const std::uint64_t behind = times.sum(bin + 1, bin + 1 + kSide);
   return std::log((static_cast<double>(before) + 1.0) / (static_cast<double>(behind) + 1.0));
+}
+
+/// True when the curve is about level before the bin and behind it, unlike the tail of times that
+/// chance gives, which falls faster and faster.
+bool isStep(const TimeHistogram& times, std::size_t bin) {
+  const auto sum = [&times](std::size_t first) {
+    return static_cast<double>(times.sum(first, first + kSide));
+  };
+  const double before = sum(bin - kSide);
+  const double behind = sum(bin + 1);
+  const bool level_before = before >= kLevel * sum(bin - 2 * kSide);
+  const bool level_behind = sum(bin + 1 + kSide) >= kLevel * behind || behind <= kNothing * before;
+  return level_before && level_behind;
 }
 
 void checkPolarity(const EventStatistics& statistics, std::vector<Finding>& findings) {
@@ -95,16 +110,15 @@ void checkHotPixels(const EventStatistics& statistics, std::vector<Finding>& fin
 std::optional<double> backgroundActivityEdge_ns(const TimeHistogram& times, double longest_ns) {
   std::optional<double> edge_ns;
   double sharpest = std::log(kBreakOff);
-  for (std::size_t bin = kTrend + 2 * kSide; bin + kTrend + kSide < TimeHistogram::kBins; ++bin) {
+  for (std::size_t bin = kTrend + 2 * kSide; bin + 2 * kSide + 1 < TimeHistogram::kBins; ++bin) {
     const double start_ns = TimeHistogram::binStart_ns(bin);
     if (start_ns < kLeastActivityTime_ns || start_ns > longest_ns ||
         times.sum(bin - kSide, bin) < kEnough) {
       continue;
     }
-    // How fast the curve falls anyway, on either side of the edge.
-    const double trend = std::max({0.0, fall(times, bin - kTrend), fall(times, bin + kTrend)});
-    const double drop = fall(times, bin) - trend;
-    if (drop > sharpest) {
+    // How fast the curve falls anyway, before the edge.
+    const double drop = fall(times, bin) - std::max(0.0, fall(times, bin - kTrend));
+    if (drop > sharpest && isStep(times, bin)) {
       sharpest = drop;
       edge_ns = TimeHistogram::binStart_ns(bin + 1);
     }
