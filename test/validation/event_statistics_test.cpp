@@ -63,10 +63,10 @@ TEST(EventStatisticsTest, AHotPixelFiresAlwaysAndFarMoreThanOthers) {
     const std::int64_t t_ns = ms * kMs;
     statistics.add({4, 5, t_ns, true});
     if (ms < 300) {
-      statistics.add({12, 12, t_ns, true});  // busy for a while only
+      statistics.add({2, 12, t_ns, true});  // busy for a while only
     }
     for (std::uint16_t x = 8; x < 16; ++x) {  // many busy pixels beside each other
-      for (std::uint16_t y = 0; y < 8; ++y) {
+      for (std::uint16_t y = 0; y < 16; ++y) {
         if (ms % 10 == 0) {
           statistics.add({x, y, t_ns, false});
         }

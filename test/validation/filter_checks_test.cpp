@@ -2,6 +2,7 @@
 #include "fast_edi/validation/filter_checks.hpp"
 
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -66,9 +67,12 @@ TEST(FilterChecksTest, ARefractoryFilterLetsTimesSetInAtOnce) {
 
 EventStatistics withPolarities(int on, int off) {
   EventStatistics statistics({64, 64});
+  std::mt19937 random(1);
+  std::int64_t t_ns = 0;
   for (int i = 0; i < on + off; ++i) {
-    statistics.add({static_cast<std::uint16_t>(i % 61), static_cast<std::uint16_t>(i % 59),
-                    std::int64_t{i} * 7'919, i < on});
+    t_ns += static_cast<std::int64_t>(random() % 16'384);
+    statistics.add({static_cast<std::uint16_t>(random() % 64),
+                    static_cast<std::uint16_t>(random() % 64), t_ns, i < on});
   }
   return statistics;
 }
