@@ -157,6 +157,7 @@ class Deblurrer::Impl {
   std::uint64_t integral_generation_ = 0;
   std::vector<float> gain_;
   std::optional<OnlineCalibration> calibration_;  ///< of the integral's size
+  std::uint64_t calibration_generation_ = 0;      ///< of the lists that it learned from
   std::vector<float> unfiltered_gain_;            ///< for it
   LatentImage latent_image_;
   LatentVideo video_;
@@ -341,6 +342,11 @@ FrameVerdict Deblurrer::Impl::judge(const WaitingFrame& frame, bool out_of_time)
 }
 
 void Deblurrer::Impl::closeReady() {
+  // Before any window is computed: a learned delay of events is part of it.
+  if (calibration_generation_ != events_.generation()) {
+    calibration_generation_ = events_.generation();
+    resetCalibration();
+  }
   while (!waiting_.empty()) {
     FrameVerdict verdict = judge(waiting_.front(), false);
     if (!verdict.isFinal()) {
@@ -501,7 +507,6 @@ bool Deblurrer::Impl::prepareIntegral(bool may_allocate) {
     integral_->forget();
     integral_generation_ = events_.generation();
     expectation_.reset();
-    resetCalibration();
   }
   return true;
 }
@@ -574,7 +579,9 @@ void Deblurrer::Impl::applyCalibration(const Calibration& calibration) {
   parameters_.time_offset_ns = requested_.time_offset_ns + calibration.event_delay_ns;
   if (parameters_.thresholds != calibration.thresholds) {
     parameters_.thresholds = calibration.thresholds;
-    integral_->setThresholds(parameters_.thresholds);
+    if (integral_) {
+      integral_->setThresholds(parameters_.thresholds);
+    }
     expectation_.reset();
   }
 }

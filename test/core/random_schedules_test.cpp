@@ -191,7 +191,11 @@ TEST(RandomSchedules, UndisturbedFramesAreThoseOfAFreshInstance) {
   std::uint64_t compared = 0;
   std::uint64_t learned = 0;
   const std::uint64_t schedules = testing::scheduleCount(kSchedules);
-  for (std::uint64_t seed = 0; seed < schedules; ++seed) {
+  for (std::uint64_t number = 0; number <= schedules; ++number) {
+    // One that few others resemble: the first frame waits for a jump to be confirmed, and what was
+    // learned before must not shift its window.
+    constexpr std::uint64_t kTellingSeed = 2677;
+    const std::uint64_t seed = number < schedules ? number : kTellingSeed;
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     DeblurParameters parameters = anyParameters(random);
