@@ -1,6 +1,8 @@
 #include "fast_edi/ros/image_pixels.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include <cv_bridge/cv_bridge.h>
 #include <sensor_msgs/image_encodings.h>
@@ -21,17 +23,38 @@ cv::Mat sharedGrey(const sensor_msgs::Image& message) {
           const_cast<std::uint8_t*>(message.data.data()), message.step};
 }
 
+/// By cv_bridge, which wants rows that fill the message exactly; the last one may lack its padding.
+cv::Mat converted(const sensor_msgs::Image& message, const std::string& encoding) {
+  if (message.data.size() == std::size_t{message.step} * message.height) {
+    return cv_bridge::toCvCopy(message, encoding)->image;
+  }
+  const auto row_bytes = static_cast<std::size_t>(static_cast<int>(message.width) *
+                                                  encodings::numChannels(message.encoding) *
+                                                  encodings::bitDepth(message.encoding) / 8);
+  sensor_msgs::Image packed;
+  packed.header = message.header;
+  packed.height = message.height;
+  packed.width = message.width;
+  packed.encoding = message.encoding;
+  packed.is_bigendian = message.is_bigendian;
+  packed.step = static_cast<std::uint32_t>(row_bytes);
+  for (std::uint32_t y = 0; y < message.height; ++y) {
+    const std::uint8_t* row = message.data.data() + std::size_t{message.step} * y;
+    packed.data.insert(packed.data.end(), row, row + row_bytes);
+  }
+  return cv_bridge::toCvCopy(packed, encoding)->image;
+}
+
 }  // namespace
 
 cv::Mat greyPixels(const sensor_msgs::Image& message) {
   // Not by cv_bridge, which takes 8UC1 for a matrix without colour.
-  return isGrey(message) ? sharedGrey(message)
-                         : cv_bridge::toCvCopy(message, encodings::MONO8)->image;
+  return isGrey(message) ? sharedGrey(message) : converted(message, encodings::MONO8);
 }
 
 cv::Mat colorPixels(const sensor_msgs::Image& message) {
   if (!isGrey(message)) {
-    return cv_bridge::toCvCopy(message, encodings::BGR8)->image;
+    return converted(message, encodings::BGR8);
   }
   cv::Mat color;
   cv::cvtColor(sharedGrey(message), color, cv::COLOR_GRAY2BGR);

@@ -80,6 +80,17 @@ TEST_F(ComparisonViewTest, DrawsEveryEncodingThatIsDeblurred) {
   }
 }
 
+TEST_F(ComparisonViewTest, DrawsImagesWhoseRowsDoNotFillTheMessage) {
+  for (const std::string encoding : {"mono8", "8UC1", "mono16", "rgb8", "bgr8", "bayer_rggb8"}) {
+    const sensor_msgs::Image dense = makeImage(encoding, 60);
+    sensor_msgs::Image padded = dense;
+    padded.step += 3;
+    padded.data.assign(padded.step * 3 + dense.step, 60);  // the last row lacks its padding
+    EXPECT_EQ(view_.draw(padded, dense, window_)->data, view_.draw(dense, dense, window_)->data)
+        << encoding;
+  }
+}
+
 TEST_F(ComparisonViewTest, KeepsABoundedNumberOfEvents) {
   EventArray old_events;
   old_events.append({0, 0, 1000, true});
