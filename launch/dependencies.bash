@@ -27,6 +27,7 @@ FAST_EDI_DEBIAN_RUN=(
 FAST_EDI_DEBIAN_TEST=(
   python3-rostest libgtest-dev libgmock-dev catkin-lint clang-tidy clang-format doxygen libxml2-utils
   shellcheck
+  clang libclang-rt-dev
 )
 
 # The same on Ubuntu 20.04 with the ROS Noetic packages.
@@ -45,6 +46,7 @@ FAST_EDI_NOETIC_RUN=(
 FAST_EDI_NOETIC_TEST=(
   ros-noetic-rostest libgtest-dev libgmock-dev python3-catkin-lint clang-tidy clang-format doxygen
   libxml2-utils shellcheck
+  clang
 )
 
 # Runs a command as root. Asks for a password only where somebody can type one.

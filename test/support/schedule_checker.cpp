@@ -6,6 +6,7 @@
 
 #include "fast_edi/core/event_wire.hpp"
 #include "fast_edi/core/pixel_event_lists.hpp"
+#include "fast_edi/core/stamp_limits.hpp"
 
 namespace fast_edi::testing {
 namespace {
@@ -25,7 +26,8 @@ InputFrame ScheduleChecker::expect(InputFrame frame) {
   has_latest_ = true;
   largest_pixels_ = std::max(largest_pixels_, frame.image.size.pixelCount());
   frame.owner = std::make_shared<std::shared_ptr<const void>>(std::move(frame.owner));
-  frames_.push_back({frame.owner, frame.stamp_ns, epoch_, pauses_});
+  const std::int64_t stamp_ns = std::clamp(frame.stamp_ns, std::int64_t{0}, kLastStamp_ns);
+  frames_.push_back({frame.owner, stamp_ns, epoch_, pauses_});
   return frame;
 }
 
