@@ -71,7 +71,7 @@ std::optional<ExposuresByEvents> exposuresByEvents(const RecordingSurvey& survey
     return std::nullopt;
   }
   // One busy time for each frame: between consecutive pauses about a period apart.
-  const auto period_ns = static_cast<double>(survey.frames().period_ns());
+  const auto period_ns = static_cast<double>(survey.frames().periodNs());
   std::vector<double> busy;
   std::vector<double> shifts;
   for (std::size_t i = 1; i < pauses.size(); ++i) {

@@ -19,7 +19,7 @@ constexpr int kReach = 2;
 
 }  // namespace
 
-double TimeHistogram::binStart_ns(std::size_t bin) {
+double TimeHistogram::binStartNs(std::size_t bin) {
   return 1e3 * std::exp2(static_cast<double>(bin) / kPerOctave);
 }
 

@@ -107,11 +107,11 @@ void checkHotPixels(const EventStatistics& statistics, std::vector<Finding>& fin
 
 }  // namespace
 
-std::optional<double> backgroundActivityEdge_ns(const TimeHistogram& times, double longest_ns) {
+std::optional<double> backgroundActivityEdgeNs(const TimeHistogram& times, double longest_ns) {
   std::optional<double> edge_ns;
   double sharpest = std::log(kBreakOff);
   for (std::size_t bin = kTrend + 2 * kSide; bin + 2 * kSide + 1 < TimeHistogram::kBins; ++bin) {
-    const double start_ns = TimeHistogram::binStart_ns(bin);
+    const double start_ns = TimeHistogram::binStartNs(bin);
     if (start_ns < kLeastActivityTime_ns || start_ns > longest_ns ||
         times.sum(bin - kSide, bin) < kEnough) {
       continue;
@@ -120,15 +120,15 @@ std::optional<double> backgroundActivityEdge_ns(const TimeHistogram& times, doub
     const double drop = fall(times, bin) - std::max(0.0, fall(times, bin - kTrend));
     if (drop > sharpest && isStep(times, bin)) {
       sharpest = drop;
-      edge_ns = TimeHistogram::binStart_ns(bin + 1);
+      edge_ns = TimeHistogram::binStartNs(bin + 1);
     }
   }
   return edge_ns;
 }
 
-std::optional<double> refractoryEdge_ns(const TimeHistogram& times) {
+std::optional<double> refractoryEdgeNs(const TimeHistogram& times) {
   for (std::size_t bin = kSide; bin + kSide < TimeHistogram::kBins; ++bin) {
-    const double start_ns = TimeHistogram::binStart_ns(bin);
+    const double start_ns = TimeHistogram::binStartNs(bin);
     if (start_ns < kLeastRefractoryTime_ns || start_ns > kMostRefractoryTime_ns) {
       continue;
     }
@@ -139,7 +139,7 @@ std::optional<double> refractoryEdge_ns(const TimeHistogram& times) {
     if (behind >= kEnough && static_cast<double>(before) <= kSetIn * static_cast<double>(behind) &&
         static_cast<double>(times[bin + 1]) >= kAtOnce * static_cast<double>(behind) &&
         static_cast<double>(earlier) <= kMostEarlier * static_cast<double>(times.total())) {
-      return TimeHistogram::binStart_ns(bin + 1);
+      return TimeHistogram::binStartNs(bin + 1);
     }
   }
   return std::nullopt;
@@ -154,7 +154,7 @@ bool polarityIsMissing(const EventStatistics& statistics) {
 
 std::vector<Finding> checkFilters(const EventStatistics& statistics, double stretch_ns) {
   std::vector<Finding> findings;
-  if (const auto edge_ns = backgroundActivityEdge_ns(
+  if (const auto edge_ns = backgroundActivityEdgeNs(
           statistics.neighbourTimes(), std::min(kMostActivityTime_ns, kCutOff * stretch_ns))) {
     findings.push_back(
         {"background-activity-filter", "isolated events, too: noise shows that nothing was removed",
@@ -162,7 +162,7 @@ std::vector<Finding> checkFilters(const EventStatistics& statistics, double stre
          "driver: background_activity_filter_enabled: false; the first events of edges are "
          "missing"});
   }
-  if (const auto edge_ns = refractoryEdge_ns(statistics.pixelTimes())) {
+  if (const auto edge_ns = refractoryEdgeNs(statistics.pixelTimes())) {
     findings.push_back(
         {"refractory-filter", "events of a pixel within 0.2 ms of each other, too",
          textOf("none within %.2f ms of the pixel's last, many from there on", *edge_ns / kMs),

@@ -58,7 +58,7 @@ void FrameLog::finish() {
   }
 }
 
-std::int64_t FrameLog::period_ns() const {
+std::int64_t FrameLog::periodNs() const {
   std::vector<std::int64_t> steps;
   for (std::size_t i = 1; i < frames_.size(); ++i) {
     const std::int64_t step_ns = frames_[i].stamp_ns - frames_[i - 1].stamp_ns;

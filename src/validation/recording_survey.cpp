@@ -54,7 +54,7 @@ void RecordingSurvey::finish() {
   use_messages_ = !parameters_.exposure_from_parameter && exposuresPlausible();
 }
 
-std::int64_t RecordingSurvey::roughClockOffset_ns() const {
+std::int64_t RecordingSurvey::roughClockOffsetNs() const {
   std::vector<std::int64_t> frame_delays_ns;
   for (const LoggedFrame& frame : frames_.frames()) {
     frame_delays_ns.push_back(frame.record_ns - frame.stamp_ns);
@@ -64,18 +64,18 @@ std::int64_t RecordingSurvey::roughClockOffset_ns() const {
              : median(std::move(frame_delays_ns)) - median(array_delays_ns_);
 }
 
-std::int64_t RecordingSurvey::typicalExposure_us() const {
-  return median({frames_.exposures_us().begin(), frames_.exposures_us().end()});
+std::int64_t RecordingSurvey::typicalExposureUs() const {
+  return median({frames_.exposuresUs().begin(), frames_.exposuresUs().end()});
 }
 
 bool RecordingSurvey::exposuresPlausible() const {
-  const std::int64_t typical_us = typicalExposure_us();
-  return frames_.exposures_us().empty() ||
+  const std::int64_t typical_us = typicalExposureUs();
+  return frames_.exposuresUs().empty() ||
          (typical_us >= kLeastExposure_us &&
-          typical_us * kNanosecondsPerMicrosecond <= frames_.period_ns());
+          typical_us * kNanosecondsPerMicrosecond <= frames_.periodNs());
 }
 
-std::int64_t RecordingSurvey::assumedLength_ns(const LoggedFrame& frame) const {
+std::int64_t RecordingSurvey::assumedLengthNs(const LoggedFrame& frame) const {
   if (use_messages_ && frame.length_ns > 0) {
     return frame.length_ns;
   }
@@ -83,7 +83,7 @@ std::int64_t RecordingSurvey::assumedLength_ns(const LoggedFrame& frame) const {
 }
 
 std::optional<ExposureInterval> RecordingSurvey::assumedExposure(const LoggedFrame& frame) const {
-  const std::int64_t length_ns = assumedLength_ns(frame);
+  const std::int64_t length_ns = assumedLengthNs(frame);
   if (length_ns <= 0) {
     return std::nullopt;
   }

@@ -50,7 +50,7 @@ void RecordingValidator::addFrame(const FrameMessage& frame) {
     const LoggedFrame& logged = frames[sampled_frames_];
     SampledFrame sampled;
     sampled.stamp_ns = logged.stamp_ns;
-    sampled.length_ns = survey_.assumedLength_ns(logged);
+    sampled.length_ns = survey_.assumedLengthNs(logged);
     sampled.previous_length_ns =
         sampled.length_ns == logged.length_ns ? logged.previous_length_ns : 0;
     sampler_->addFrame(sampled_frames_, sampled, frame.pixels);
@@ -77,14 +77,14 @@ bool RecordingValidator::endSurvey() {
   search_.thresholds = survey_.parameters().thresholds;
   std::int64_t longest_ns = 0;
   for (const LoggedFrame& frame : survey_.frames().frames()) {
-    longest_ns = std::max(longest_ns, survey_.assumedLength_ns(frame));
+    longest_ns = std::max(longest_ns, survey_.assumedLengthNs(frame));
   }
   if (longest_ns == 0) {
-    longest_ns = survey_.frames().period_ns();
+    longest_ns = survey_.frames().periodNs();
   }
   search_.range_ns = std::max(kLeastRange_ns, longest_ns / 2 + kMargin_ns);
-  if (std::abs(survey_.roughClockOffset_ns()) > kLargestRoughOffset_ns) {
-    search_.centre_ns = survey_.roughClockOffset_ns();
+  if (std::abs(survey_.roughClockOffsetNs()) > kLargestRoughOffset_ns) {
+    search_.centre_ns = survey_.roughClockOffsetNs();
     search_.range_ns = std::max(search_.range_ns, kRoughRange_ns);
   }
   const auto requests = chooseSamples(survey_, search_.centre_ns, search_.range_ns);

@@ -10,7 +10,7 @@ void printSummary(std::ostream& out, const RecordingSurvey& survey) {
   const FrameLog& frames = survey.frames();
   const EventEpoch* epoch = survey.timeline().longestEpoch();
   out << textOf("frames: %zu, every %.1f ms; exposure messages: %zu\n", frames.frames().size(),
-                static_cast<double>(frames.period_ns()) * 1e-6, frames.exposures_us().size());
+                static_cast<double>(frames.periodNs()) * 1e-6, frames.exposuresUs().size());
   if (epoch == nullptr || survey.statistics() == nullptr) {
     out << "events: none\n";
     return;
@@ -44,7 +44,7 @@ void printReport(std::ostream& out, const RecordingSurvey& survey, const Validat
                                   : textOf("%zu findings", report.findings.size()))
       << "; proposal:\n\n";
   const ParameterProposal& proposal = report.proposal;
-  const bool by_topic = proposal.exposure_time_us == 0 && !survey.frames().exposures_us().empty();
+  const bool by_topic = proposal.exposure_time_us == 0 && !survey.frames().exposuresUs().empty();
   out << "stamp_reference: " << instantName(proposal.stamp_reference) << "\n"
       << "time_offset_us: " << proposal.time_offset_us << "\n"
       << "exposure_time_us: " << proposal.exposure_time_us

@@ -33,7 +33,7 @@ std::vector<SampleRequest> chooseSamples(const RecordingSurvey& survey, std::int
   const auto index = static_cast<std::size_t>(epoch - survey.timeline().epochs().data());
   const std::vector<ExposureInterval> holes = eventHoles(survey);
   const std::vector<LoggedFrame>& frames = survey.frames().frames();
-  const auto period_ns = static_cast<double>(survey.frames().period_ns());
+  const auto period_ns = static_cast<double>(survey.frames().periodNs());
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i + 1 < frames.size(); ++i) {
     const LoggedFrame& first = frames[i];

@@ -138,7 +138,7 @@ void checkClocks(const RecordingSurvey& survey, std::vector<Finding>& findings) 
          textOf("%llu frames stamped before the one before", count(frames.earlierStamps())),
          "record again; such frames give no output unless the events jump, too"});
   }
-  const std::int64_t offset_ns = survey.roughClockOffset_ns() - survey.parameters().time_offset_ns;
+  const std::int64_t offset_ns = survey.roughClockOffsetNs() - survey.parameters().time_offset_ns;
   if (!early && jumps == 0 && std::abs(offset_ns) > kLargestRoughOffset_ns) {
     findings.push_back({"clocks-differ", "events and frames stamped by the same clock",
                         textOf("the events' clock is about %.2f s %s the frames', by the times of "

@@ -125,7 +125,7 @@ void judgeLength(const RecordingSurvey& survey, const TimingEstimate& estimate,
     verdict.findings.push_back(
         {"exposure-wrong",
          textOf("exposures of %.2f ms, as %s", estimate.length_ns / kMs,
-                survey.frames().exposures_us().empty() ? "given" : "the exposure topic says"),
+                survey.frames().exposuresUs().empty() ? "given" : "the exposure topic says"),
          textOf("%.2f ms +- %.0f %% fits frames and events best", length_us * 1e-3,
                 100.0 * estimate.length_sigma),
          textOf("exposure_source: parameter, exposure_time_us: %lld",
@@ -144,7 +144,7 @@ TimingVerdict judgeTiming(const RecordingSurvey& survey, const TimingEstimate& e
   verdict.proposal.exposure_time_us = assumed.exposure_time_ns / kNanosecondsPerMicrosecond;
   const auto& frames = survey.frames().frames();
   const bool lengths_known = std::any_of(frames.begin(), frames.end(), [&](const LoggedFrame& f) {
-    return survey.assumedLength_ns(f) > 0;
+    return survey.assumedLengthNs(f) > 0;
   });
   if (by_events) {
     verdict.notes.push_back(

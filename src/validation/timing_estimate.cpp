@@ -49,7 +49,8 @@ double mean(const std::vector<double>& values) {
 double leastOf(const std::vector<double>& values) {
   const auto least =
       static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
-  const auto middle = static_cast<double>(values.size() / 2);
+  const std::size_t centre = values.size() / 2;
+  const auto middle = static_cast<double>(centre);
   const double position = static_cast<double>(least) - middle;
   if (least == 0 || least + 1 == values.size()) {
     return position;

@@ -11,7 +11,7 @@ constexpr std::int64_t kMs = kNanosecondsPerMillisecond;
 std::size_t binOf(std::int64_t time_ns) {
   std::size_t bin = 0;
   while (bin + 1 < TimeHistogram::kBins &&
-         TimeHistogram::binStart_ns(bin + 1) <= static_cast<double>(time_ns)) {
+         TimeHistogram::binStartNs(bin + 1) <= static_cast<double>(time_ns)) {
     ++bin;
   }
   return bin;
@@ -19,8 +19,8 @@ std::size_t binOf(std::int64_t time_ns) {
 
 TEST(TimeHistogramTest, OctavesHaveEightBins) {
   TimeHistogram histogram;
-  EXPECT_DOUBLE_EQ(TimeHistogram::binStart_ns(0), 1e3);
-  EXPECT_DOUBLE_EQ(TimeHistogram::binStart_ns(80), 1024e3);
+  EXPECT_DOUBLE_EQ(TimeHistogram::binStartNs(0), 1e3);
+  EXPECT_DOUBLE_EQ(TimeHistogram::binStartNs(80), 1024e3);
   histogram.add(1'024'001);
   histogram.add(0);                // below: the first bin
   histogram.add(1'000'000 * kMs);  // beyond: the last bin

@@ -32,13 +32,13 @@ TimeHistogram chanceTimes(const std::function<bool(double ms)>& kept) {
 
 TEST(FilterChecksTest, ChanceHasNoEdges) {
   const TimeHistogram times = chanceTimes([](double) { return true; });
-  EXPECT_FALSE(backgroundActivityEdge_ns(times, kLong_ns));
-  EXPECT_FALSE(refractoryEdge_ns(times));
+  EXPECT_FALSE(backgroundActivityEdgeNs(times, kLong_ns));
+  EXPECT_FALSE(refractoryEdgeNs(times));
 }
 
 TEST(FilterChecksTest, ABackgroundActivityFilterBreaksTimesOff) {
   for (const double filter_ms : {2.0, 20.0}) {
-    const auto edge_ns = backgroundActivityEdge_ns(
+    const auto edge_ns = backgroundActivityEdgeNs(
         chanceTimes([&](double ms) { return ms < filter_ms || std::fmod(ms, 1.0) < 0.15; }),
         kLong_ns);
     ASSERT_TRUE(edge_ns) << filter_ms;
@@ -51,16 +51,16 @@ TEST(FilterChecksTest, APeakIsNotAFilter) {
   for (int i = 0; i < 2000; ++i) {
     times.add(static_cast<std::int64_t>(10.0 * kMs));  // flickering light
   }
-  EXPECT_FALSE(backgroundActivityEdge_ns(times, kLong_ns));
+  EXPECT_FALSE(backgroundActivityEdgeNs(times, kLong_ns));
 }
 
 TEST(FilterChecksTest, ARefractoryFilterLetsTimesSetInAtOnce) {
-  const auto edge_ns = refractoryEdge_ns(chanceTimes([](double ms) { return ms >= 1.0; }));
+  const auto edge_ns = refractoryEdgeNs(chanceTimes([](double ms) { return ms >= 1.0; }));
   ASSERT_TRUE(edge_ns);
   EXPECT_NEAR(*edge_ns / kMs, 1.0, 0.1);
   // A scene's own shortest times come up slowly.
   std::mt19937 random(1);
-  EXPECT_FALSE(refractoryEdge_ns(chanceTimes([&](double ms) {
+  EXPECT_FALSE(refractoryEdgeNs(chanceTimes([&](double ms) {
     return ms > 1.0 && (random() % 1000) * 1e-3 < std::pow((ms - 1.0) / 3.0, 2.0);
   })));
 }

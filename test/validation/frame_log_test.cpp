@@ -28,7 +28,7 @@ TEST(FrameLogTest, PairsFramesWithTheirExposures) {
   EXPECT_EQ(log.frames()[2].length_ns, 10'002'000);
   EXPECT_EQ(log.frames()[2].previous_length_ns, 10'001'000);
   EXPECT_EQ(log.frames()[0].previous_length_ns, 0);
-  EXPECT_EQ(log.period_ns(), 40 * kMs);
+  EXPECT_EQ(log.periodNs(), 40 * kMs);
   EXPECT_EQ(log.gaps(), 0U);
 }
 

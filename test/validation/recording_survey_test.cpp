@@ -19,9 +19,9 @@ TEST(RecordingSurveyTest, CountsTheMessages) {
   ASSERT_NE(survey.statistics(), nullptr);
   EXPECT_EQ(survey.statistics()->size(), SyntheticRecording::kSize);
   EXPECT_EQ(survey.eventSizes().size(), 1U);
-  EXPECT_EQ(survey.typicalExposure_us(), 20'000);
+  EXPECT_EQ(survey.typicalExposureUs(), 20'000);
   EXPECT_TRUE(survey.exposuresPlausible());
-  EXPECT_LT(std::abs(survey.roughClockOffset_ns()), 30 * kMs);
+  EXPECT_LT(std::abs(survey.roughClockOffsetNs()), 30 * kMs);
 }
 
 TEST(RecordingSurveyTest, TakesExposuresAsTheParametersSay) {
@@ -35,7 +35,7 @@ TEST(RecordingSurveyTest, TakesExposuresAsTheParametersSay) {
 
   recording.parameters.exposure_from_parameter = true;
   recording.parameters.exposure_time_ns = 7 * kMs;
-  EXPECT_EQ(recording.run().assumedLength_ns(frame), 7 * kMs);
+  EXPECT_EQ(recording.run().assumedLengthNs(frame), 7 * kMs);
   recording.parameters.exposure_time_ns = 0;
   EXPECT_FALSE(recording.run().assumedExposure(frame));
 }
@@ -43,8 +43,7 @@ TEST(RecordingSurveyTest, TakesExposuresAsTheParametersSay) {
 TEST(RecordingSurveyTest, SeesClocksThatDiffer) {
   SyntheticRecording recording;
   recording.event_stamp = [](std::int64_t t) { return t + 5'000 * kMs; };
-  EXPECT_NEAR(static_cast<double>(recording.run().roughClockOffset_ns()), 5'000.0 * kMs,
-              30.0 * kMs);
+  EXPECT_NEAR(static_cast<double>(recording.run().roughClockOffsetNs()), 5'000.0 * kMs, 30.0 * kMs);
 }
 
 }  // namespace

@@ -16,13 +16,13 @@ namespace fast_edi {
 class TimeHistogram {
  public:
   static constexpr int kPerOctave = 8;
-  static constexpr std::size_t kBins = 26 * kPerOctave;  ///< up to a minute
+  static constexpr std::size_t kBins = std::size_t{26} * kPerOctave;  ///< up to a minute
 
   void add(std::int64_t time_ns);
   std::uint64_t operator[](std::size_t bin) const { return counts_[bin]; }
   std::uint64_t total() const { return total_; }
   /// Where a bin begins.
-  static double binStart_ns(std::size_t bin);
+  static double binStartNs(std::size_t bin);
   /// Sum of bins [first, last).
   std::uint64_t sum(std::size_t first, std::size_t last) const;
 

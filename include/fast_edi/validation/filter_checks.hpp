@@ -28,10 +28,10 @@ namespace fast_edi {
 
 /// Time at which times to neighbours' events break off, if they do [ns].
 /// \param longest_ns not looked for beyond
-std::optional<double> backgroundActivityEdge_ns(const TimeHistogram& neighbour_times,
-                                                double longest_ns);
+std::optional<double> backgroundActivityEdgeNs(const TimeHistogram& neighbour_times,
+                                               double longest_ns);
 /// Time at which times between a pixel's events set in, if they do so at once [ns].
-std::optional<double> refractoryEdge_ns(const TimeHistogram& pixel_times);
+std::optional<double> refractoryEdgeNs(const TimeHistogram& pixel_times);
 
 /// True when there are hardly any events of one polarity.
 bool polarityIsMissing(const EventStatistics& statistics);

@@ -47,13 +47,13 @@ class FrameLog {
 
   const std::vector<LoggedFrame>& frames() const { return frames_; }
   const DeblurCounters& counters() const { return counters_; }  ///< exposures_...
-  const std::vector<std::int32_t>& exposures_us() const { return exposures_us_; }
+  const std::vector<std::int32_t>& exposuresUs() const { return exposures_us_; }
   std::uint64_t gaps() const { return gaps_; }  ///< in header.seq
   std::uint64_t repeatedStamps() const { return repeated_stamps_; }
   std::uint64_t earlierStamps() const { return earlier_stamps_; }
   const std::map<std::string, std::uint64_t>& faults() const { return faults_; }
   /// Median time from frame to frame, 0 with fewer than two frames [ns].
-  std::int64_t period_ns() const;
+  std::int64_t periodNs() const;
 
  private:
   void apply(const std::vector<ExposureMatch>& matches);

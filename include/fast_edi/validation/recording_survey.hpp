@@ -50,13 +50,13 @@ class RecordingSurvey {
   const std::map<std::pair<int, int>, std::uint64_t>& eventSizes() const { return event_sizes_; }
   std::uint64_t arrayGaps() const { return array_gaps_; }
   /// Events minus frames by the times at which both were recorded: good to some ten milliseconds.
-  std::int64_t roughClockOffset_ns() const;
+  std::int64_t roughClockOffsetNs() const;
   /// Typical value of the exposure messages, 0 = none [us].
-  std::int64_t typicalExposure_us() const;
+  std::int64_t typicalExposureUs() const;
   /// False when the exposure messages cannot be exposure times in microseconds.
   bool exposuresPlausible() const;
   /// Length of a frame's exposure as fast_edi would take it, 0 = not known [ns].
-  std::int64_t assumedLength_ns(const LoggedFrame& frame) const;
+  std::int64_t assumedLengthNs(const LoggedFrame& frame) const;
   /// The same in event time with the assumed parameters; empty while the length is not known.
   std::optional<ExposureInterval> assumedExposure(const LoggedFrame& frame) const;
 
