@@ -26,8 +26,13 @@ constexpr float kLeastChange = 3.0F;
 /// More events than this for each event of change: texture that came and went, or noise.
 constexpr float kMostEventsPerChange = 1.3F;
 constexpr float kSpareEvents = 2.0F;
-/// Residuals above this count less and less (scale of the Cauchy weights) [natural log].
-constexpr double kResidualScale = 0.5;
+/// Residuals above this count less and less (scale of the Cauchy weights) [natural log]: wide while
+/// thresholds and delay may be far off, then about what noise and mismatch of a pixel make.
+constexpr double kFirstResidualScale = 0.5;
+constexpr double kResidualScale = 0.2;
+constexpr int kFirstFits = 3;
+/// Pixels count as the square of their intensity relative to this one [8-bit DN].
+constexpr double kTypicalGrey_dn = 100.0;
 /// Each event adds this much to the variance of a pixel's residual, relative to that of the frames.
 constexpr double kVariancePerEvent = 0.1;
 constexpr std::size_t kLeastPixels = 50;
@@ -160,6 +165,7 @@ void OnlineCalibration::loadLogLatent(const Frame& frame, const CameraResponse& 
     log_exposure[static_cast<std::size_t>(dn)] =
         static_cast<float>(std::log(response.exposure(static_cast<double>(dn))));
   }
+  log_typical_ = std::log(response.exposure(kTypicalGrey_dn));
   const int bytes = bytesPerPixel(frame.image.format);
   std::size_t i = 0;
   for (int y = 0; y < size_.height; ++y) {
@@ -236,12 +242,12 @@ std::size_t OnlineCalibration::fit(const Band& band, NormalEquations& equations)
   const Eigen::Vector3d theta(in_force_.thresholds.on, in_force_.thresholds.off,
                               static_cast<double>(in_force_.event_delay_ns) /
                                   static_cast<double>(kNanosecondsPerMillisecond));
+  const double scale = fits_ < kFirstFits ? kFirstResidualScale : kResidualScale;
   std::size_t pixels = 0;
   for (std::size_t i = 0; i < band.pixels; ++i) {
     const PixelEvidence& pixel = evidence_[i];
     const float change = std::fabs(pixel.on - pixel.off);
-    if (change < kLeastChange ||
-        pixel.count > kMostEventsPerChange * change + kSpareEvents) {
+    if (change < kLeastChange || pixel.count > kMostEventsPerChange * change + kSpareEvents) {
       continue;
     }
     const std::size_t at = band.first_pixel + i;
@@ -250,9 +256,13 @@ std::size_t OnlineCalibration::fit(const Band& band, NormalEquations& equations)
     if (std::isnan(residual)) {
       continue;  // one of both grey levels is no evidence
     }
-    const double scaled = residual / kResidualScale;
-    const double weight = 1.0 / ((1.0 + scaled * scaled) *
-                                 (1.0 + kVariancePerEvent * static_cast<double>(pixel.count)));
+    const double scaled = residual / scale;
+    // An error of log intensity is seen in proportion to the intensity.
+    const double intensity = std::exp(
+        static_cast<double>(log_latent_[at] + previous_log_latent_[at]) - 2.0 * log_typical_);
+    const double weight =
+        intensity /
+        ((1.0 + scaled * scaled) * (1.0 + kVariancePerEvent * static_cast<double>(pixel.count)));
     const Eigen::Vector3d x(static_cast<double>(pixel.on), -static_cast<double>(pixel.off),
                             static_cast<double>(pixel.slope));
     equations.matrix += weight * x * x.transpose();

@@ -21,7 +21,9 @@
 /// log L2 - log L1 to counts of events.
 ///
 /// Fit: least squares over pixels that tell something (|x_on - x_off| >= 3, hardly any events back
-/// and forth, no grey level near black or saturation), robust (Cauchy weights), with a ridge
+/// and forth, no grey level near black or saturation), weighted by the square of the intensity
+/// (events of dark pixels come later than those of bright ones, in which errors are seen), robust
+/// (Cauchy weights), with a ridge
 /// towards the nominal values, exponential forgetting, and limits: thresholds within 30 % of
 /// nominal, the delay within 5 ms.
 ///
@@ -140,6 +142,7 @@ class OnlineCalibration {
   bool have_previous_ = false;
   ExposureInterval previous_window_;
   std::int64_t previous_reference_ns_ = 0;
+  double log_typical_ = 0.0;       ///< log exposure of a typical grey
   std::vector<float> log_latent_;  ///< log B + log gain; NaN where B is no evidence
   std::vector<float> previous_log_latent_;
   std::vector<PixelEvidence> evidence_;  ///< of the band, from its first pixel on
