@@ -109,11 +109,11 @@ bool FaultyStream::isSupported(const Event& event) {
   bool supported = false;
   for (int y = std::max(0, event.y - 1); y <= last_y; ++y) {
     for (int x = std::max(0, event.x - 1); x <= last_x; ++x) {
-      const auto pixel = static_cast<std::size_t>(y * size_.width + x);
+      const std::size_t pixel = pixelIndex(x, y);
       supported = supported || ((x != event.x || y != event.y) && last_raw_ns_[pixel] >= since_ns);
     }
   }
-  last_raw_ns_[static_cast<std::size_t>(event.y * size_.width + event.x)] = event.t_ns;
+  last_raw_ns_[pixelIndex(event.x, event.y)] = event.t_ns;
   return supported;
 }
 
@@ -126,8 +126,7 @@ bool FaultyStream::passes(const Event& event) {
     return false;
   }
   if (faults_.refractory_filter_us > 0) {
-    std::int64_t& last_ns =
-        last_passed_ns_[static_cast<std::size_t>(event.y * size_.width + event.x)];
+    std::int64_t& last_ns = last_passed_ns_[pixelIndex(event.x, event.y)];
     if (event.t_ns - last_ns < faults_.refractory_filter_us * kNanosecondsPerMicrosecond) {
       return false;
     }

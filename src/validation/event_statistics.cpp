@@ -74,9 +74,7 @@ void EventStatistics::add(const Event& event) {
     slice_ = slice;
     ++slices_;
   }
-  const std::size_t pixel =
-      static_cast<std::size_t>(event.y) * static_cast<std::size_t>(size_.width) +
-      static_cast<std::size_t>(event.x);
+  const std::size_t pixel = pixelIndex(event.x, event.y);
   ++counts_[pixel];
   if (last_slice_[pixel] != slice) {
     last_slice_[pixel] = slice;
@@ -105,7 +103,7 @@ std::vector<HotPixel> EventStatistics::hotPixels() const {
   std::vector<std::uint32_t> around;
   for (int y = 0; y < size_.height; ++y) {
     for (int x = 0; x < size_.width; ++x) {
-      const auto pixel = static_cast<std::size_t>(y * size_.width + x);
+      const std::size_t pixel = pixelIndex(x, y);
       const double rate_hz = counts_[pixel] / seconds;
       if (rate_hz < kLeastHotRate_hz ||
           busy_slices_[pixel] < kBusyShare * static_cast<double>(slices_)) {
@@ -114,7 +112,7 @@ std::vector<HotPixel> EventStatistics::hotPixels() const {
       around.clear();
       for (int v = std::max(0, y - kReach); v <= std::min(size_.height - 1, y + kReach); ++v) {
         for (int u = std::max(0, x - kReach); u <= std::min(size_.width - 1, x + kReach); ++u) {
-          around.push_back(counts_[static_cast<std::size_t>(v * size_.width + u)]);
+          around.push_back(counts_[pixelIndex(u, v)]);
         }
       }
       const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);

@@ -3,6 +3,7 @@
 /// of davis_ros_driver do.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -72,6 +73,10 @@ class FaultyStream {
   std::int64_t middle() const { return middle_ns_; }
 
  private:
+  std::size_t pixelIndex(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
+           static_cast<std::size_t>(x);
+  }
   bool passes(const Event& event);
   bool isSupported(const Event& event);
   std::int64_t faultyClock(std::int64_t t_ns) const;

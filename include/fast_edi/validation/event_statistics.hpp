@@ -57,6 +57,10 @@ class EventStatistics {
   std::vector<HotPixel> hotPixels() const;
 
  private:
+  std::size_t pixelIndex(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
+           static_cast<std::size_t>(x);
+  }
   std::size_t paddedIndex(int x, int y) const {
     return static_cast<std::size_t>(y + 1) * stride_ + static_cast<std::size_t>(x + 1);
   }
