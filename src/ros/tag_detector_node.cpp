@@ -131,7 +131,7 @@ void TagDetectorNode::guarded(Work&& work) {
 void TagDetectorNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
   guarded([&] {
     snapshot_.last_frame_ns = callback_start_ns_;
-    snapshot_.frame_gaps += gaps_.isAfterGap(message->header.seq) ? 1 : 0;
+    snapshot_.frame_gaps += gaps_.step(message->header.seq) == SequenceStep::kGap ? 1 : 0;
     const ImageReading reading = readImage(*message);
     if (reading.verdict != ImageVerdict::kSupported) {
       ++snapshot_.frames_refused;

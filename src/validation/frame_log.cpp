@@ -24,7 +24,7 @@ void FrameLog::addFrame(const FrameMessage& frame, std::size_t epoch) {
     repeated_stamps_ += step_ns == 0 ? 1 : 0;
     earlier_stamps_ += step_ns < 0 ? 1 : 0;
   }
-  gaps_ += sequence_gaps_.isAfterGap(frame.sequence) ? 1 : 0;
+  gaps_ += sequence_gaps_.step(frame.sequence) == SequenceStep::kGap ? 1 : 0;
   if (!frame.fault.empty()) {
     ++faults_[frame.fault];
   }

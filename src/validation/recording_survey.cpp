@@ -21,7 +21,7 @@ std::int64_t median(std::vector<std::int64_t> values) {
 void RecordingSurvey::addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                                 std::int64_t record_ns) {
   ++event_sizes_[{size.width, size.height}];
-  array_gaps_ += sequence_gaps_.isAfterGap(sequence) ? 1 : 0;
+  array_gaps_ += sequence_gaps_.step(sequence) == SequenceStep::kGap ? 1 : 0;
   if (size.pixelCount() == 0 || events.empty()) {
     return;
   }
