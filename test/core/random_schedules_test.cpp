@@ -154,9 +154,11 @@ enum class Recovery {
   kPause,
 };
 
-/// A sensor time at which a camera can go on after \p schedule: a second after the last array that
-/// is no stray event, and not just behind any stray one, which would make everything late.
+/// A sensor time at which a camera can go on after \p schedule: some seconds after the last array
+/// that is no stray event, and not near any stray one, which would make everything late. Output
+/// stamps reach an exposure of up to a second further than a frame's.
 std::int64_t timeAfter(const Schedule& schedule) {
+  constexpr std::int64_t kPause_ns = 3 * kNanosecondsPerSecond;
   std::vector<std::int64_t> stamps;
   std::int64_t start_ns = 0;
   for (const ScheduledMessage& message : schedule) {
@@ -165,13 +167,13 @@ std::int64_t timeAfter(const Schedule& schedule) {
     } else if (message.kind == MessageKind::kEvents) {
       const WireEvents events = testing::wireView(message.records);
       stamps.push_back(decodeWireEvent(events.record(events.count - 1)).t_ns);
-      start_ns = events.count > 1 ? stamps.back() + kNanosecondsPerSecond : start_ns;
+      start_ns = events.count > 1 ? stamps.back() + kPause_ns : start_ns;
     }
   }
   std::sort(stamps.begin(), stamps.end());
   for (const std::int64_t stamp_ns : stamps) {
-    if (stamp_ns >= start_ns && stamp_ns < start_ns + 2 * kNanosecondsPerSecond) {
-      start_ns = stamp_ns + kNanosecondsPerSecond;
+    if (stamp_ns >= start_ns - kPause_ns && stamp_ns < start_ns + kPause_ns) {
+      start_ns = stamp_ns + kPause_ns;
     }
   }
   return start_ns;
