@@ -6,6 +6,8 @@
 
 #include <dynamic_reconfigure/Config.h>
 #include <dynamic_reconfigure/server.h>
+#include <ros/callback_queue.h>
+#include <ros/spinner.h>
 #include <boost/thread/recursive_mutex.hpp>
 
 #include "fast_edi/DeblurConfig.h"
@@ -55,31 +57,19 @@ void assign(const Values& values, DeblurConfig& config) {
   config.__fromMessage__(message);
 }
 
-/// The generated class, but for three things that the library's server does with it. (The names
-/// are the library's.)
+/// The generated class without what the library's server would do by itself. (The names are the
+/// library's.)
 class ServedConfig : public DeblurConfig {
  public:
   ServedConfig() = default;
   ServedConfig(const DeblurConfig& config) : DeblurConfig(config) {}  // NOLINT: not explicit
 
-  /// Nothing: what is out of range is refused by the handler.
+  /// What is out of range is refused by the handler.
   void __clamp__() {}
-  /// Nothing: parameters are read by the node itself, and only once.
+  /// Parameters are read by the node itself, and only once.
   void __fromServer__(const ros::NodeHandle& /*nh*/) {}
-  void __toServer__(const ros::NodeHandle& nh) const {
-    if (!in_force) {
-      return;  // the library's defaults, before it was told what is in force
-    }
-    DeblurConfig::__toServer__(nh);
-    if (contrast_threshold_on == 0.0) {
-      nh.deleteParam("contrast_threshold_on");
-    }
-    if (contrast_threshold_off == 0.0) {
-      nh.deleteParam("contrast_threshold_off");
-    }
-  }
-
-  bool in_force = false;
+  /// Impl writes what has changed: each value takes a call to the master.
+  void __toServer__(const ros::NodeHandle& /*nh*/) const {}
 };
 
 }  // namespace
@@ -87,20 +77,24 @@ class ServedConfig : public DeblurConfig {
 class ReconfigureServer::Impl {
  public:
   Impl(const ros::NodeHandle& private_nh, const Values& in_force, Handler handler)
-      : handler_(std::move(handler)) {
-    // Requests that come meanwhile wait until the server knows what is in force.
-    const boost::recursive_mutex::scoped_lock lock(mutex_);
-    server_.emplace(mutex_, private_nh);
+      : nh_(private_nh), handler_(std::move(handler)) {
+    ros::NodeHandle own_nh(private_nh);
+    own_nh.setCallbackQueue(&requests_);
+    server_.emplace(mutex_, own_nh);
     server_->setCallback([this, in_force](ServedConfig& config, std::uint32_t /*level*/) {
       if (last_.empty()) {
-        assign(in_force, config);
-        config.in_force = true;
-        last_ = valuesOf(config);
+        takeOver(in_force, config);
       } else {
         change(config);
       }
     });
+    spinner_.start();
   }
+
+  /// The library's server cannot be destroyed while it answers a request.
+  ~Impl() { spinner_.stop(); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
 
  private:
   void change(ServedConfig& config) {
@@ -111,15 +105,40 @@ class ReconfigureServer::Impl {
       }
     }
     if (!wanted.empty()) {
-      assign(handler_(wanted), config);
-      last_ = valuesOf(config);
+      takeOver(handler_(wanted), config);
     }
   }
 
+  /// Makes \p config what is in force, and the parameter server's values too.
+  void takeOver(const Values& in_force, DeblurConfig& config) {
+    assign(in_force, config);
+    const Values before = std::exchange(last_, valuesOf(config));
+    for (const auto& parameter : DeblurConfig::__getParamDescriptions__()) {
+      const std::string& name = parameter->name;
+      const auto old = before.find(name);
+      if (old != before.end() && old->second == last_.at(name)) {
+        continue;
+      }
+      if (isFromBiases(name)) {
+        nh_.deleteParam(name);
+      } else {
+        parameter->toServer(nh_, config);
+      }
+    }
+  }
+
+  bool isFromBiases(const std::string& name) const {
+    return (name == "contrast_threshold_on" || name == "contrast_threshold_off") &&
+           last_.at(name) == "0";
+  }
+
+  ros::NodeHandle nh_;
   Handler handler_;
   boost::recursive_mutex mutex_;
   Values last_;  ///< in force, as the server writes them
+  ros::CallbackQueue requests_;
   std::optional<dynamic_reconfigure::Server<ServedConfig>> server_;
+  ros::AsyncSpinner spinner_{1, &requests_};
 };
 
 ReconfigureServer::ReconfigureServer(const ros::NodeHandle& private_nh, const Values& in_force,

@@ -2,9 +2,11 @@
 // expect of the images is tested elsewhere; here it is that the node works on, and, with
 // ThreadSanitizer, that no two threads meet at the same data.
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <thread>
@@ -23,6 +25,7 @@
 #include <sensor_msgs/Image.h>
 
 #include "fast_edi/ros/deblur_node.hpp"
+#include "rostest/child_process.hpp"
 #include "rostest/made_up_camera.hpp"
 #include "rostest/node_client.hpp"
 #include "rostest/ros_master.hpp"
@@ -76,6 +79,25 @@ class Reconfigurer {
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
+
+/// Changes parameters through the node's service all the time, while frames close. A process of its
+/// own: with both ends in one, ThreadSanitizer reports the locks of roscpp's connections.
+/// - contrast_threshold_on: out of range, from biases, and two values of its own
+/// - latent_images: more of them take another publisher
+const char* const kTuner = R"(
+import itertools, rospy, time
+from dynamic_reconfigure.msg import BoolParameter, Config, DoubleParameter, IntParameter
+from dynamic_reconfigure.srv import Reconfigure
+call = rospy.ServiceProxy('/camera/deblur/set_parameters', Reconfigure)
+for i in itertools.count():
+    try:
+        call(Config(doubles=[DoubleParameter('contrast_threshold_on', 0.1 * (i % 4 - 1))],
+                    ints=[IntParameter('latent_images', 40 if i % 16 == 0 else 1)],
+                    bools=[BoolParameter('filter', i % 2 == 0)]))
+    except rospy.ServiceException:
+        pass  # there is no node at the moment
+    time.sleep(0.02)
+)";
 
 /// Subscribes to an output and leaves after a few images, again and again.
 class PassingConsumer {
@@ -157,12 +179,15 @@ std::unique_ptr<test::RosMaster> DeblurNodeThreads::master_;
 TEST_P(DeblurNodeThreads, WorksWhileEverybodyComesAndGoes) {
   ros::CallbackQueue reports;
   std::string internal_errors;
+  int changes = 0;  // of parameters, in the report that has most
   ros::NodeHandle nh;
   nh.setCallbackQueue(&reports);
   const ros::Subscriber diagnostics = nh.subscribe<diagnostic_msgs::DiagnosticArray>(
       "/diagnostics", 10, [&](const diagnostic_msgs::DiagnosticArrayConstPtr& array) {
         for (const diagnostic_msgs::DiagnosticStatus& status : array->status) {
           internal_errors += test::valueOf(status, "Internal errors");
+          changes =
+              std::max(changes, std::atoi(test::valueOf(status, "Parameter changes").c_str()));
         }
       });
 
@@ -170,6 +195,7 @@ TEST_P(DeblurNodeThreads, WorksWhileEverybodyComesAndGoes) {
   settings.frames = 5;
   const test::MadeUpCamera camera(kNamespace, settings, kHaste);
   const Reconfigurer reconfigurer;
+  const test::ChildProcess tuner({"/usr/bin/python3", "-c", kTuner});
   const PassingConsumer first("deblurred/image_raw", 10);
   const PassingConsumer second("deblurred/image_raw", 4);
   const PassingConsumer spectator("comparison", 3);
@@ -194,12 +220,13 @@ TEST_P(DeblurNodeThreads, WorksWhileEverybodyComesAndGoes) {
     if (i + 1 == kNodes) {
       EXPECT_TRUE(test::waitUntil([&] {
         reports.callAvailable();
-        return !internal_errors.empty() && spectator.images() > comparisons_before &&
+        return !internal_errors.empty() && changes > 0 && spectator.images() > comparisons_before &&
                filmgoer.images() > latent_before;
       }));
     }
   }
   EXPECT_GT(second.images(), 0u);
+  EXPECT_GT(changes, 0);
   EXPECT_EQ(first.outOfOrder() + second.outOfOrder(), 0u);
   EXPECT_THAT(internal_errors, ::testing::MatchesRegex("0+"));
 }

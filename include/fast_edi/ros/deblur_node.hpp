@@ -34,7 +34,8 @@ namespace fast_edi {
 /// Threads. Callbacks come from the node handles' callback queue. Events, frames and exposures have
 /// to be handled in the order of their arrival, so that queue must call one callback at a time: a
 /// nodelet's getNodeHandle() whatever the number of the manager's worker threads, or ros::spin(). A
-/// queue that calls several at once does no harm beyond that order.
+/// queue that calls several at once does no harm beyond that order. Changes of parameters come from
+/// the thread of ReconfigureServer.
 ///
 /// mutex_ guards all members that callbacks use: everything from sink_ on, live_, parameters_,
 /// driver_biases_ and closing_. Each callback holds it from beginning to end. It is needed even

@@ -17,9 +17,9 @@ namespace fast_edi {
 /// parameter server show what is in force after each request. The parameter server has no contrast
 /// threshold while it comes from biases: a later start with 0 would be refused.
 ///
-/// Threads. The handler is called from the node handle's callback queue, and holding a lock of this
-/// object: it may take the caller's mutex, but the caller must not hold that mutex while it
-/// constructs or destroys this object.
+/// Threads. Requests are answered in a thread of this object's own, one at a time, so that events
+/// need not wait for the parameter server. The handler may take the caller's mutex; the caller must
+/// not hold that mutex while it destroys this object, which waits for a request at work.
 class ReconfigureServer {
  public:
   /// \param wanted values that differ from those in force
