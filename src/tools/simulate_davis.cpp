@@ -446,7 +446,8 @@ int run(int argc, char** argv) {
             "--white-dn 717 --frames 1200 --period-us 50000 --exposure-us 40000 --lead-us 100000");
   addOption(scene, "seed", settings.seed, "equal seeds give equal bags");
   addOption(scene, "texture", texture,
-            "poster, natural, flat, mosaic, page, or a picture: anything with a '.' or '/' in it is a path");
+            "poster, natural, flat, mosaic, page, or a picture: anything with a '.' or '/' in it "
+            "is a path");
   addOption(scene, "density", settings.scene.density, "how full the poster is, 0..1");
   addOption(scene, "tags", settings.scene.tags, "number of AprilTags (36h11)");
   addOption(scene, "tag-side-px", settings.scene.tag_side_px, "side of a tag's black square [px]");
