@@ -23,14 +23,15 @@ cv::Mat sharedGrey(const sensor_msgs::Image& message) {
           const_cast<std::uint8_t*>(message.data.data()), message.step};
 }
 
-/// By cv_bridge, which wants rows that fill the message exactly; the last one may lack its padding.
+/// By cv_bridge, which wants rows that fill the message exactly, of whole pixels with their
+/// padding; that of the last row may be missing.
 cv::Mat converted(const sensor_msgs::Image& message, const std::string& encoding) {
-  if (message.data.size() == std::size_t{message.step} * message.height) {
-    return cv_bridge::toCvCopy(message, encoding)->image;
-  }
   const auto row_bytes = static_cast<std::size_t>(static_cast<int>(message.width) *
                                                   encodings::numChannels(message.encoding) *
                                                   encodings::bitDepth(message.encoding) / 8);
+  if (message.step == row_bytes && message.data.size() == row_bytes * message.height) {
+    return cv_bridge::toCvCopy(message, encoding)->image;
+  }
   sensor_msgs::Image packed;
   packed.header = message.header;
   packed.height = message.height;

@@ -85,9 +85,12 @@ TEST_F(ComparisonViewTest, DrawsImagesWhoseRowsDoNotFillTheMessage) {
     const sensor_msgs::Image dense = makeImage(encoding, 60);
     sensor_msgs::Image padded = dense;
     padded.step += 3;
-    padded.data.assign(padded.step * 3 + dense.step, 60);  // the last row lacks its padding
-    EXPECT_EQ(view_.draw(padded, dense, window_)->data, view_.draw(dense, dense, window_)->data)
-        << encoding;
+    // With and without the padding of the last row.
+    for (const std::size_t size : {padded.step * 3 + dense.step, padded.step * 4}) {
+      padded.data.assign(size, 60);
+      EXPECT_EQ(view_.draw(padded, dense, window_)->data, view_.draw(dense, dense, window_)->data)
+          << encoding;
+    }
   }
 }
 
