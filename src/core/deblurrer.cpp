@@ -92,6 +92,7 @@ class Deblurrer::Impl {
 
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                  std::int64_t now_ns);
+  void noteLostEvents(std::size_t events) { events_.noteLost(events); }
   void addFrame(InputFrame frame, std::int64_t now_ns);
   void addExposure(std::int32_t exposure_us, std::int64_t now_ns);
   void advance(std::int64_t now_ns);
@@ -605,6 +606,10 @@ Deblurrer::~Deblurrer() = default;
 void Deblurrer::addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                           std::int64_t now_ns) {
   impl_->addEvents(events, size, sequence, now_ns);
+}
+
+void Deblurrer::noteLostEvents(std::size_t events) {
+  impl_->noteLostEvents(events);
 }
 
 void Deblurrer::addFrame(InputFrame frame, std::int64_t now_ns) {

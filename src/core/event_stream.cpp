@@ -31,6 +31,7 @@ void EventStream::take(const WireEvents& events, SensorSize size, std::uint32_t 
   const bool refused = !isValid(size);
   const SequenceStep step = sequence_gaps_.step(sequence);
   counters_.event_array_gaps += step == SequenceStep::kGap ? 1 : 0;
+  counters_.event_arrays_missing += step == SequenceStep::kGap ? sequence_gaps_.missing() : 0;
   counters_.event_restarts += step == SequenceStep::kRestart ? 1 : 0;
   arrays_missing_ =
       arrays_missing_ || step != SequenceStep::kNothingMissing || (refused && !events.empty());
@@ -51,6 +52,14 @@ void EventStream::take(const WireEvents& events, SensorSize size, std::uint32_t 
   markMissingArrays();  // once more: there may be a new epoch
   arrays_missing_ = false;
   ingest(events);
+}
+
+void EventStream::noteLost(std::size_t events) {
+  counters_.events_in += events;
+  counters_.events_overflowed += events;
+  sequence_gaps_.restart();  // the hole that follows in their numbers is this one
+  arrays_missing_ = true;
+  markMissingArrays();
 }
 
 void EventStream::markMissingArrays() {

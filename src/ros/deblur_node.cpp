@@ -29,6 +29,15 @@ constexpr int kLatentQueueFrames = 2;
 const ros::WallDuration kAdvancePeriod(0.004);
 const ros::WallDuration kReportPeriod(1.0);
 constexpr std::int64_t kWarningInterval_ns = 10 * kNanosecondsPerSecond;
+/// One part in so many of `max_buffered_events` is for nothing but arrays that wait for their
+/// callback; more of it while the pipeline leaves more.
+constexpr std::size_t kWaitingShare = 4;
+
+/// What the pipeline may take of `max_buffered_events`.
+DeblurParameters forPipeline(DeblurParameters parameters) {
+  parameters.max_buffered_events -= parameters.max_buffered_events / kWaitingShare;
+  return parameters;
+}
 
 }  // namespace
 
@@ -91,7 +100,7 @@ void DeblurNode::configure() {
     sink_->setLatent(
         [this] { return latent_publisher_.getNumSubscribers() > 0; },
         [this](const sensor_msgs::ImagePtr& image) { latent_publisher_.publish(image); });
-    deblurrer_ = std::make_unique<Deblurrer>(parameters_.deblur, *sink_);
+    deblurrer_ = std::make_unique<Deblurrer>(forPipeline(parameters_.deblur), *sink_);
   } catch (const std::exception& error) {
     configuration_error_ = error.what();
     ROS_ERROR_STREAM(name_ << " stays idle, its configuration in " << private_nh_.getNamespace()
@@ -154,11 +163,10 @@ std::unique_ptr<DeblurNode::Inputs> DeblurNode::subscribe() {
   inputs->exposure =
       nh_.subscribe("exposure", kExposureQueue, &DeblurNode::receiveExposure, this, no_delay);
   inputs->events = std::make_unique<EventSubscription>(
-      nh_, "events", kEventQueue,
+      nh_, "events", WaitingArrays::Limits{kEventQueue, waitingLimit()},
       [this](const WireEvents& events, SensorSize size, std::uint32_t sequence,
-             std::int64_t decoding_since_ns) {
-        receiveEvents(events, size, sequence, decoding_since_ns);
-      });
+             std::int64_t arrived_ns) { receiveEvents(events, size, sequence, arrived_ns); },
+      [this](std::size_t lost) { receiveLoss(lost); });
   inputs->image = image_transport::ImageTransport(nh_).subscribe(
       "image_raw", kImageQueue, &DeblurNode::receiveImage, this,
       image_transport::TransportHints("raw", no_delay, private_nh_));
@@ -193,6 +201,7 @@ template <typename Work>
 void DeblurNode::guarded(Work&& work) {
   const std::lock_guard<std::mutex> lock(mutex_);
   callback_start_ns_ = steadyNow();
+  message_arrived_ns_ = callback_start_ns_;
   try {
     work();
   } catch (const std::exception& error) {
@@ -215,10 +224,11 @@ void DeblurNode::whileListening(Work&& work) {
 }
 
 void DeblurNode::receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
-                               std::int64_t decoding_since_ns) {
+                               std::int64_t arrived_ns) {
   whileListening([&] {
-    // What the array cost before this callback belongs to the latency of the frame it completes.
-    callback_start_ns_ = decoding_since_ns > 0 ? decoding_since_ns : callback_start_ns_;
+    // What the array cost and waited before this callback belongs to the latency of the frame that
+    // it completes.
+    message_arrived_ns_ = arrived_ns;
     totals_.last_events_ns = callback_start_ns_;
     if (comparison_publisher_.getNumSubscribers() > 0) {
       comparison_.addEvents(events);  // first: these events may close the frame they belong to
@@ -226,7 +236,17 @@ void DeblurNode::receiveEvents(const WireEvents& events, SensorSize size, std::u
       comparison_.clear();
     }
     deblurrer_->addEvents(events, size, sequence, callback_start_ns_);
+    inputs_->events->limitWaiting(waitingLimit());
   });
+}
+
+/// What buffered events leave of `max_buffered_events` to those that wait.
+std::size_t DeblurNode::waitingLimit() const {
+  return parameters_.deblur.max_buffered_events - deblurrer_->status().buffered_events;
+}
+
+void DeblurNode::receiveLoss(std::size_t events) {
+  whileListening([&] { deblurrer_->noteLostEvents(events); });
 }
 
 void DeblurNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
@@ -293,7 +313,7 @@ LoadedParameters DeblurNode::withDriverBiases(
 }
 
 void DeblurNode::putInForce(LoadedParameters parameters) {
-  deblurrer_->setParameters(parameters.deblur);
+  deblurrer_->setParameters(forPipeline(parameters.deblur));
   const bool contrast_changes = parameters.deblur.thresholds != parameters_.deblur.thresholds ||
                                 parameters.contrast_origin != parameters_.contrast_origin;
   parameters_ = std::move(parameters);
@@ -349,7 +369,7 @@ void DeblurNode::deliver(const sensor_msgs::ImagePtr& image, const sensor_msgs::
   deblurred_publisher_.publish(image, info);
   ++totals_.frames_out;
   const std::int64_t published_ns = steadyNow();
-  close_latency_.add(published_ns - callback_start_ns_);
+  close_latency_.add(published_ns - message_arrived_ns_);
   output_latency_.add(published_ns - messageFrame(output.input).arrival_ns);
   if (output.input.supported && comparison_publisher_.getNumSubscribers() > 0) {
     publishComparison(*image, output);

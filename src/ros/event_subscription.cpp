@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <ros/subscribe_options.h>
 #include <ros/this_node.h>
 #include <ros/transport_hints.h>
 
@@ -17,11 +18,13 @@
 namespace fast_edi {
 
 EventSubscription::EventSubscription(const ros::NodeHandle& nh, const std::string& topic,
-                                     std::uint32_t queue_size, Handler handler)
+                                     WaitingArrays::Limits limits, Handler handler,
+                                     WaitingArrays::LossHandler on_loss)
     : nh_(nh),
       topic_(nh_.resolveName(topic)),
-      queue_size_(queue_size),
-      handler_(std::move(handler)) {
+      max_waiting_arrays_(limits.arrays),
+      handler_(std::move(handler)),
+      waiting_(*nh_.getCallbackQueue(), limits, std::move(on_loss)) {
 #ifdef FAST_EDI_HAVE_DVS_MSGS
   ros::V_string published_here;
   ros::this_node::getAdvertisedTopics(published_here);
@@ -41,6 +44,7 @@ EventSubscription::~EventSubscription() {
     std::swap(last, subscriber_);
   }
   last.shutdown();  // waits, without the mutex that the callback may be waiting for
+  // Then waiting_ waits for a delivery at work.
 }
 
 bool EventSubscription::takesPointers() const {
@@ -61,15 +65,34 @@ void EventSubscription::replaceBy(ros::Subscriber next, bool takes_pointers) {
   next.shutdown();
 }
 
+template <typename Array>
+ros::Subscriber EventSubscription::subscribe(
+    const boost::function<void(const ros::MessageEvent<const Array>&)>& callback) {
+  ros::SubscribeOptions options;
+  options.initByFullCallbackType<const ros::MessageEvent<const Array>&>(
+      topic_, static_cast<std::uint32_t>(max_waiting_arrays_), callback);
+  options.callback_queue = &immediate_queue_;
+  options.allow_concurrent_callbacks = true;  // a publisher's thread must not find it busy
+  options.transport_hints = ros::TransportHints().tcpNoDelay();
+  return nh_.subscribe(options);
+}
+
 void EventSubscription::subscribeToWire() {
-  const boost::function<void(const ros::MessageEvent<const EventArray>&)> callback =
-      [this](const ros::MessageEvent<const EventArray>& event) { receive(event); };
-  replaceBy(nh_.subscribe<EventArray>(topic_, queue_size_, callback, ros::VoidConstPtr(),
-                                      ros::TransportHints().tcpNoDelay()),
+  replaceBy(subscribe<EventArray>(
+                [this](const ros::MessageEvent<const EventArray>& event) { receive(event); }),
             false);
 }
 
 void EventSubscription::receive(const ros::MessageEvent<const EventArray>& event) {
+  waiting_.add(event.getConstMessage()->events().count, [this, event] { handOver(event); });
+}
+
+void EventSubscription::handOver(const ros::MessageEvent<const EventArray>& event) {
+#ifdef FAST_EDI_HAVE_DVS_MSGS
+  if (takesPointers()) {
+    return;  // behind the hole that was announced
+  }
+#endif
   const EventArray& array = *event.getConstMessage();
   handler_(array.events(), sensorSize(array), array.header.seq, array.decodingSince());
 #ifdef FAST_EDI_HAVE_DVS_MSGS
@@ -83,14 +106,14 @@ void EventSubscription::receive(const ros::MessageEvent<const EventArray>& event
 
 #ifdef FAST_EDI_HAVE_DVS_MSGS
 void EventSubscription::subscribeToPointers() {
-  const boost::function<void(const dvs_msgs::EventArray::ConstPtr&)> callback =
-      [this](const dvs_msgs::EventArray::ConstPtr& array) {
-        const std::int64_t since_ns = steadyNow();
-        handler_(packGeneratedEvents(array->events, records_), sensorSize(*array),
-                 array->header.seq, since_ns);
-      };
-  replaceBy(nh_.subscribe<dvs_msgs::EventArray>(topic_, queue_size_, callback, ros::VoidConstPtr(),
-                                                ros::TransportHints().tcpNoDelay()),
+  replaceBy(subscribe<dvs_msgs::EventArray>(
+                [this](const ros::MessageEvent<const dvs_msgs::EventArray>& event) {
+                  const dvs_msgs::EventArray::ConstPtr array = event.getConstMessage();
+                  waiting_.add(array->events.size(), [this, array, since_ns = steadyNow()] {
+                    handler_(packGeneratedEvents(array->events, records_), sensorSize(*array),
+                             array->header.seq, since_ns);
+                  });
+                }),
             true);
 }
 #endif

@@ -222,6 +222,7 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
   status.add("Events overflowed", c.events_overflowed);
   status.add("Events refused", c.events_refused);
   status.add("Event array gaps", c.event_array_gaps);
+  status.add("Event arrays missing", c.event_arrays_missing);
   status.add("Event publisher restarts", c.event_restarts);
   status.add("Event time jumps", c.event_time_jumps);
   status.add("Sensor size changes", c.size_changes);

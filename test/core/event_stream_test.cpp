@@ -42,7 +42,7 @@ class EventStreamTest : public ::testing::Test {
   void checkThatNothingIsLost() const {
     const std::uint64_t accepted = stream.lists() ? stream.lists()->endSequence() : 0;
     const std::uint64_t gone = counters.events_late + counters.events_outside +
-                               counters.events_glitched + counters.events_refused;
+                               counters.events_glitched + counters.events_refused + dropped;
     EXPECT_LE(accepted + gone, counters.events_in);
     if (held == 0) {
       EXPECT_EQ(accepted + gone, counters.events_in);
@@ -53,7 +53,8 @@ class EventStreamTest : public ::testing::Test {
 
   DeblurCounters counters;
   std::vector<std::pair<StreamBreak, std::int64_t>> breaks;
-  std::size_t held = 0;  ///< events that the test expects to be held apart
+  std::size_t dropped = 0;  ///< on the way, before they came here
+  std::size_t held = 0;     ///< events that the test expects to be held apart
   std::uint32_t sequence = 0;
   EventStream stream{
       PixelEventLists::Limits{1'000'000, kBackLimit, kForwardLimit}, counters,
@@ -102,6 +103,31 @@ TEST_F(EventStreamTest, ALostArrayMakesAHoleBetweenItsNeighbours) {
   EXPECT_TRUE(stream.covers({kStart, kStart + 20 * kMs}));
   EXPECT_FALSE(stream.covers({kStart, kStart + 20 * kMs + 1}));
   EXPECT_FALSE(stream.covers({kStart + 40 * kMs - 1, kStart + 50 * kMs}));
+  EXPECT_TRUE(stream.covers({kStart + 40 * kMs, kStart + 50 * kMs}));
+}
+
+TEST_F(EventStreamTest, AGapTellsHowManyArraysAreMissing) {
+  take({kStart});
+  take({kStart + 10 * kMs});
+  takeAs(sequence + 4, {kStart + 40 * kMs});
+  take({kStart + 50 * kMs});
+  takeAs(sequence + 3, {kStart + 70 * kMs});
+  EXPECT_EQ(counters.event_array_gaps, 2u);
+  EXPECT_EQ(counters.event_arrays_missing, 3u + 2u);
+}
+
+TEST_F(EventStreamTest, EventsDroppedOnTheWayLeaveAHoleThatIsNoGap) {
+  take({kStart, kStart + 10 * kMs});
+  take({kStart + 20 * kMs});
+  dropped = 5;
+  stream.noteLost(dropped);
+  EXPECT_FALSE(stream.covers({kStart, kStart + 20 * kMs + 1}));
+  takeAs(sequence + 2, {kStart + 40 * kMs, kStart + 50 * kMs});
+  EXPECT_EQ(counters.events_overflowed, 5u);
+  EXPECT_EQ(counters.events_in, 3u + 5u + 2u);
+  EXPECT_EQ(counters.event_array_gaps, 0u);
+  EXPECT_TRUE(stream.covers({kStart, kStart + 20 * kMs}));
+  EXPECT_FALSE(stream.covers({kStart + 20 * kMs, kStart + 40 * kMs}));
   EXPECT_TRUE(stream.covers({kStart + 40 * kMs, kStart + 50 * kMs}));
 }
 

@@ -22,6 +22,7 @@ namespace test {
 namespace {
 
 constexpr std::uint32_t kQueue = 100;
+constexpr WaitingArrays::Limits kLimits{kQueue, 1000};
 
 struct Received {
   std::vector<std::uint8_t> records;
@@ -63,6 +64,10 @@ class EventPointers : public ::testing::Test {
     };
   }
 
+  static WaitingArrays::LossHandler onLoss() {
+    return [](std::size_t events) { ADD_FAILURE() << events << " events dropped"; };
+  }
+
   bool waitUntil(const std::function<bool()>& condition) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (!condition()) {
@@ -82,7 +87,7 @@ class EventPointers : public ::testing::Test {
 
 TEST_F(EventPointers, ComeFromThisProcessWithoutBeingSerialised) {
   const ros::Publisher publisher = nh_.advertise<dvs_msgs::EventArray>("here/events", kQueue);
-  const EventSubscription subscription(nh_, "here/events", kQueue, handler());
+  const EventSubscription subscription(nh_, "here/events", kLimits, handler(), onLoss());
   EXPECT_TRUE(subscription.takesPointers());
   ASSERT_TRUE(waitUntil([&] { return publisher.getNumSubscribers() == 1; }));
   const auto array = makeArray(7);
@@ -94,7 +99,7 @@ TEST_F(EventPointers, ComeFromThisProcessWithoutBeingSerialised) {
 }
 
 TEST_F(EventPointers, AreTakenFromThePublisherThatStartsLater) {
-  const EventSubscription subscription(nh_, "later/events", kQueue, handler());
+  const EventSubscription subscription(nh_, "later/events", kLimits, handler(), onLoss());
   EXPECT_FALSE(subscription.takesPointers());
   const ros::Publisher publisher = nh_.advertise<dvs_msgs::EventArray>("later/events", kQueue);
   ASSERT_TRUE(waitUntil([&] { return publisher.getNumSubscribers() == 1; }));

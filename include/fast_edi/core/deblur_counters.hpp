@@ -32,6 +32,7 @@ struct DeblurCounters {
   std::uint64_t event_arrays = 0;
   std::uint64_t event_arrays_refused = 0;  ///< width or height not within 1..32767
   std::uint64_t event_array_gaps = 0;      ///< holes in header.seq
+  std::uint64_t event_arrays_missing = 0;  ///< numbers left out by those holes
   std::uint64_t event_restarts = 0;        ///< header.seq fell: the publisher started anew
   std::uint64_t event_time_jumps = 0;
   std::uint64_t frame_time_jumps = 0;

@@ -56,6 +56,10 @@ class Deblurrer {
   /// (holes in it are counted and mark events as missing; a value that does not grow says nothing).
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                  std::int64_t now_ns);
+  /// Events that were dropped on their way here, between the last array and the next, because too
+  /// many were waiting: counted as arrived and overflowed, and missing in the frames they belong
+  /// to.
+  void noteLostEvents(std::size_t events);
   void addFrame(InputFrame frame, std::int64_t now_ns);
   void addExposure(std::int32_t exposure_us, std::int64_t now_ns);
   /// Closes what the passing of time alone decides. Call it at least every few milliseconds.

@@ -23,7 +23,9 @@ class SequenceGaps {
     const bool grows = last_ && sequence > *last_;
     const bool wraps = last_ && *last_ == UINT32_MAX;
     SequenceStep step = SequenceStep::kNothingMissing;
+    missing_ = 0;
     if (growing_ && grows && sequence - *last_ > 1) {
+      missing_ = sequence - *last_ - 1;
       step = SequenceStep::kGap;
     } else if (growing_ && sequence < *last_ && !wraps) {
       step = SequenceStep::kRestart;
@@ -32,6 +34,8 @@ class SequenceGaps {
     last_ = sequence;
     return step;
   }
+  /// Messages that the last step left out.
+  std::uint32_t missing() const { return missing_; }
   void restart() {
     last_.reset();
     growing_ = false;
@@ -40,6 +44,7 @@ class SequenceGaps {
  private:
   std::optional<std::uint32_t> last_;
   bool growing_ = false;
+  std::uint32_t missing_ = 0;
 };
 
 }  // namespace fast_edi

@@ -42,11 +42,14 @@ namespace fast_edi {
 /// with a queue as above, which runs already while the constructor is at work, and still while the
 /// destructor is.
 ///
+/// Event arrays alone are taken in by roscpp's thread, which never waits for mutex_: see
+/// waiting_arrays.hpp.
+///
 /// Order of locks: that of ReconfigureServer, mutex_, then any lock inside ROS (publishing,
-/// subscribing, diagnostics). The server is constructed and destroyed without mutex_. The other way
-/// round would be to hold mutex_ while waiting for a callback to end, which may be waiting for
-/// mutex_. So what waits for callbacks (ending subscriptions, timers and publishers) is done
-/// without holding it.
+/// subscribing, diagnostics) or of WaitingArrays. The server is constructed and destroyed without
+/// mutex_. The other way round would be to hold mutex_ while waiting for a callback to end, which
+/// may be waiting for mutex_. So what waits for callbacks (ending subscriptions, timers and
+/// publishers) is done without holding it.
 ///
 /// Closing. First requests to change parameters, the inputs and the clock end, then the report,
 /// then the publishers: at no time can a callback meet a publisher that is gone. Subscribers that
@@ -86,7 +89,9 @@ class DeblurNode {
   std::unique_ptr<Inputs> subscribe();
 
   void receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
-                     std::int64_t decoding_since_ns);
+                     std::int64_t arrived_ns);
+  void receiveLoss(std::size_t events);
+  std::size_t waitingLimit() const;
   void receiveImage(const sensor_msgs::ImageConstPtr& message);
   void receiveCameraInfo(const sensor_msgs::CameraInfoConstPtr& message);
   void receiveExposure(const std_msgs::Int32ConstPtr& message);
@@ -130,6 +135,7 @@ class DeblurNode {
   NodeDiagnostics diagnostics_;
   NodeSnapshot totals_;  ///< the part of the snapshot that is counted here
   std::int64_t callback_start_ns_ = 0;
+  std::int64_t message_arrived_ns_ = 0;  ///< the message at hand; at most callback_start_ns_
   std::unordered_map<std::string, std::int64_t> last_warning_ns_;  ///< by kind
 
   image_transport::CameraPublisher deblurred_publisher_;

@@ -11,54 +11,80 @@
 /// chosen by where the publisher is: the generated one from the moment that this process publishes
 /// the topic. A publisher that starts later is noticed by its first array; arrays that get lost
 /// while the subscription is replaced are announced as a hole in the sequence.
+///
+/// Arrays are taken out of roscpp's queue at once, in the thread that received them, and wait for
+/// their callback where their memory is bounded, see waiting_arrays.hpp.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include <ros/callback_queue_interface.h>
 #include <ros/node_handle.h>
 #include <ros/subscriber.h>
+#include <boost/function.hpp>
 #include <boost/shared_ptr.hpp>
 
 #include "fast_edi/core/event_wire.hpp"
 #include "fast_edi/core/types.hpp"
 #include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/ros/waiting_arrays.hpp"
 
 namespace fast_edi {
 
 class EventSubscription {
  public:
   /// \param size of the sensor, {0, 0} when what the array says is impossible
-  /// \param decoding_since_ns when decoding of the array began, on the clock of steadyNow(); 0 if
-  /// it
-  ///        came as a pointer
+  /// \param arrived_ns when the array arrived, on the clock of steadyNow()
   using Handler = std::function<void(const WireEvents& events, SensorSize size,
-                                     std::uint32_t sequence, std::int64_t decoding_since_ns)>;
+                                     std::uint32_t sequence, std::int64_t arrived_ns)>;
 
+  /// \param limits of the arrays that wait for their callback; older ones are dropped
   /// \param handler called from \p nh's callback queue
-  EventSubscription(const ros::NodeHandle& nh, const std::string& topic, std::uint32_t queue_size,
-                    Handler handler);
+  /// \param on_loss the same, with the number of events that were dropped before the next array
+  EventSubscription(const ros::NodeHandle& nh, const std::string& topic,
+                    WaitingArrays::Limits limits, Handler handler,
+                    WaitingArrays::LossHandler on_loss);
   /// Waits for a callback at work to end.
   ~EventSubscription();
   EventSubscription(const EventSubscription&) = delete;
   EventSubscription& operator=(const EventSubscription&) = delete;
 
+  /// See WaitingArrays.
+  void limitWaiting(std::size_t events) { waiting_.limitEvents(events); }
+
   /// True while arrays are taken as pointers to the generated type.
   bool takesPointers() const;
 
  private:
+  /// Calls what is added in the thread that adds it.
+  class ImmediateQueue : public ros::CallbackQueueInterface {
+   public:
+    void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t) override {
+      callback->call();
+    }
+    void removeByID(std::uint64_t) override {}
+  };
+
+  template <typename Array>
+  ros::Subscriber subscribe(
+      const boost::function<void(const ros::MessageEvent<const Array>&)>& callback);
   void receive(const ros::MessageEvent<const EventArray>& event);
+  void handOver(const ros::MessageEvent<const EventArray>& event);
   void subscribeToWire();
   void subscribeToPointers();
   void replaceBy(ros::Subscriber next, bool takes_pointers);
 
   ros::NodeHandle nh_;
   std::string topic_;
-  std::uint32_t queue_size_;
+  const std::size_t max_waiting_arrays_;
   Handler handler_;
+  ImmediateQueue immediate_queue_;
+  WaitingArrays waiting_;
   std::vector<std::uint8_t> records_;  ///< packed events of the array at hand
 
   /// Guards what is below: a callback may replace the subscription while another thread ends it.
@@ -66,7 +92,7 @@ class EventSubscription {
   mutable std::mutex mutex_;
   bool ended_ = false;
   bool takes_pointers_ = false;
-  ros::Subscriber subscriber_;
+  ros::Subscriber subscriber_;  ///< to be gone before what is above
 };
 
 }  // namespace fast_edi
