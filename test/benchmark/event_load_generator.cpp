@@ -44,7 +44,7 @@ constexpr std::int64_t kPoolSpan_ns = 250 * kNanosecondsPerMillisecond;
 /// more than the receiver waits for events.
 constexpr std::int64_t kUnpacedPoolSpan_ns = 50 * kNanosecondsPerMillisecond;
 constexpr std::size_t kSmallestPool = 3;
-constexpr std::uint32_t kQueue = 1000;
+constexpr std::uint32_t kQueue = 1000;  // of images and exposures
 constexpr std::chrono::microseconds kPollInterval{100};
 constexpr std::chrono::seconds kConnectTimeout{30};
 constexpr std::chrono::seconds kDrainTimeout{5};
@@ -56,6 +56,7 @@ struct Options {
   double exposure_ms = 30.0;
   double seconds = 10.0;
   SensorSize size{346, 260};
+  int queue = 1000;
   bool unpaced = false;
 };
 
@@ -108,7 +109,8 @@ class LoadGenerator {
       : options_(options),
         array_ns_(static_cast<std::int64_t>(options.array_ms * kNanosecondsPerMillisecond)),
         exposure_ns_(static_cast<std::int64_t>(options.exposure_ms * kNanosecondsPerMillisecond)),
-        events_publisher_(nh_.advertise<EventArray>("events", kQueue)),
+        events_publisher_(
+            nh_.advertise<EventArray>("events", static_cast<std::uint32_t>(options.queue))),
         image_publisher_(nh_.advertise<sensor_msgs::Image>("image_raw", kQueue)),
         exposure_publisher_(nh_.advertise<std_msgs::Int32>("exposure", kQueue)) {
     // rate [1/us] * array [ns] / 1000
@@ -252,6 +254,8 @@ Options parse(int argc, char** argv) {
                             "how long to publish [s]")(
       "width", po::value(&options.size.width)->default_value(options.size.width), "[px]")(
       "height", po::value(&options.size.height)->default_value(options.size.height), "[px]")(
+      "queue", po::value(&options.queue)->default_value(options.queue),
+      "arrays that wait for the receiver; older ones are dropped as roscpp does")(
       "unpaced", po::bool_switch(&options.unpaced), "as fast as the receiver takes them");
   po::variables_map values;
   po::store(po::parse_command_line(argc, argv, description), values);
@@ -261,8 +265,8 @@ Options parse(int argc, char** argv) {
     std::exit(EXIT_SUCCESS);
   }
   if (options.rate_mev_s <= 0.0 || options.array_ms <= 0.0 || options.frames_hz <= 0.0 ||
-      options.exposure_ms <= 0.0) {
-    throw std::invalid_argument("rate, array, fps and exposure must be greater than 0");
+      options.exposure_ms <= 0.0 || options.queue <= 0) {
+    throw std::invalid_argument("rate, array, fps, exposure and queue must be greater than 0");
   }
   return options;
 }
