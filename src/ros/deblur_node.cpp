@@ -252,6 +252,9 @@ void DeblurNode::receiveLoss(std::size_t events) {
 void DeblurNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
   whileListening([&] {
     totals_.last_frame_ns = callback_start_ns_;
+    if (inputs_->image_gaps.step(message->header.seq) == SequenceStep::kGap) {
+      totals_.frames_missing += inputs_->image_gaps.missing();
+    }
     const ImageReading reading = readImage(*message);
     if (reading.verdict == ImageVerdict::kMalformed) {
       ++totals_.frames_malformed;

@@ -79,6 +79,8 @@ void NodeDiagnostics::collectComplaints(const NodeSnapshot& now) {
 
   complain("malformed", now.frames_malformed, before_.frames_malformed,
            "image(s)" + on_image + " refused: " + now.malformed_reason);
+  complain("image gap", now.frames_missing, before_.frames_missing,
+           "frame(s)" + on_image + " lost on the way, by the holes in header.seq");
   complain("camera info", now.camera_infos_refused, before_.camera_infos_refused,
            "camera_info(s) beside " + topics_.image +
                " refused, the one before kept: " + now.camera_info_refusal);
@@ -213,6 +215,7 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
   }
   status.add("Frames without output", c.frames_suppressed);
   status.add("Frames refused", now_.frames_malformed);
+  status.add("Frames missing", now_.frames_missing);
   status.add("Camera infos refused", now_.camera_infos_refused);
   status.add("Frame time jumps", c.frame_time_jumps);
   status.add("Events in", c.events_in);

@@ -167,6 +167,7 @@ TEST_F(NodeDiagnosticsTest, ComplainsOfWhatTheNodeItselfRefused) {
   tick();
   now_.frames_malformed = 1;
   now_.malformed_reason = "step 3 bytes, expected at least 4";
+  now_.frames_missing = 7;
   now_.camera_infos_refused = 1;
   now_.camera_info_refusal = "K holds";
   now_.bias_updates_refused = 1;
@@ -175,6 +176,7 @@ TEST_F(NodeDiagnosticsTest, ComplainsOfWhatTheNodeItselfRefused) {
   now_.internal_error = "std::bad_alloc";
   const auto status = report();
   EXPECT_THAT(status.message, HasSubstr("step 3 bytes"));
+  EXPECT_THAT(status.message, HasSubstr("7 frame(s)"));
   EXPECT_THAT(status.message, HasSubstr("K holds"));
   EXPECT_THAT(status.message, HasSubstr("/driver/parameter_updates"));
   EXPECT_THAT(status.message, HasSubstr("std::bad_alloc"));

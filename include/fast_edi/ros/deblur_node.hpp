@@ -22,6 +22,7 @@
 #include "fast_edi/config/live_parameters.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/core/deblurrer.hpp"
+#include "fast_edi/core/sequence_gaps.hpp"
 #include "fast_edi/ros/comparison_view.hpp"
 #include "fast_edi/ros/event_subscription.hpp"
 #include "fast_edi/ros/latency_record.hpp"
@@ -75,6 +76,7 @@ class DeblurNode {
   struct Inputs {
     ros::SteadyTimer advance_timer;
     image_transport::Subscriber image;
+    SequenceGaps image_gaps;
     ros::Subscriber camera_info;
     ros::Subscriber exposure;
     ros::Subscriber bias_updates;
