@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <limits>
 #include <string>
 #include <thread>
 #include <vector>
@@ -58,6 +59,7 @@ struct Options {
   SensorSize size{346, 260};
   int queue = 1000;
   bool unpaced = false;
+  bool hold = false;
 };
 
 /// An array as it goes over the wire, used again and again.
@@ -256,7 +258,9 @@ Options parse(int argc, char** argv) {
       "height", po::value(&options.size.height)->default_value(options.size.height), "[px]")(
       "queue", po::value(&options.queue)->default_value(options.queue),
       "arrays that wait for the receiver; older ones are dropped as roscpp does")(
-      "unpaced", po::bool_switch(&options.unpaced), "as fast as the receiver takes them");
+      "unpaced", po::bool_switch(&options.unpaced), "as fast as the receiver takes them")(
+      "hold", po::bool_switch(&options.hold),
+      "stay until the end of standard input: what a slow receiver has not taken yet would be lost");
   po::variables_map values;
   po::store(po::parse_command_line(argc, argv, description), values);
   po::notify(values);
@@ -277,13 +281,18 @@ Options parse(int argc, char** argv) {
 int main(int argc, char** argv) {
   ros::init(argc, argv, "event_load_generator");
   try {
-    fast_edi::benchmarks::LoadGenerator generator(fast_edi::benchmarks::parse(argc, argv));
+    const fast_edi::benchmarks::Options options = fast_edi::benchmarks::parse(argc, argv);
+    fast_edi::benchmarks::LoadGenerator generator(options);
     if (!generator.waitForSubscriber()) {
       std::cerr << "nobody subscribed to events, image_raw and exposure within 30 s\n";
       return EXIT_FAILURE;
     }
     generator.run();
     generator.print();
+    if (options.hold) {
+      std::fflush(stdout);
+      std::cin.ignore(std::numeric_limits<std::streamsize>::max());
+    }
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
     return EXIT_FAILURE;

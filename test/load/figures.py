@@ -1,4 +1,5 @@
 """Figures of a loaded node: its memory, what its consumers get, and what it says of itself."""
+import os
 import pathlib
 import statistics
 import struct
@@ -47,7 +48,7 @@ class MemoryLog:
         self.thread.start()
 
     def run(self, pid, zero, period_s):
-        while not self.stop.wait(period_s):
+        while not self.stop.wait(period_s) and os.path.exists('/proc/%d' % pid):
             self.samples.append((time.monotonic() - zero, memory_kb(pid) * 1024 / 1e6))
 
     def end(self):
