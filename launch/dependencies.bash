@@ -49,6 +49,16 @@ FAST_EDI_NOETIC_TEST=(
   clang
 )
 
+# fast_edi_heed_interrupts SCRIPT [ARGUMENT...]: starts a script anew where SIGINT is ignored, as it is
+# for what a shell runs in the background. ROS ends processes by SIGINT, and those in Python would go
+# on ignoring it. A shell cannot undo that itself.
+fast_edi_heed_interrupts() {
+  if [[ "$(trap -p INT)" == "trap -- '' "* ]]; then
+    # shellcheck disable=SC2016
+    exec perl -e '$SIG{INT} = "DEFAULT"; exec { $ARGV[0] } @ARGV or die "$ARGV[0]: $!\n"' -- "$@"
+  fi
+}
+
 # Runs a command as root. Asks for a password only where somebody can type one.
 fast_edi_as_root() {
   if [ "$(id -u)" -eq 0 ]; then

@@ -22,6 +22,7 @@ ChildProcess::ChildProcess(std::vector<std::string> command) {
   argv.push_back(nullptr);
   pid_ = fork();
   if (pid_ == 0) {
+    signal(SIGINT, SIG_DFL);  // a shell that runs the tests in the background ignores it
     execvp(argv[0], argv.data());
     _exit(kNotFound);
   }
