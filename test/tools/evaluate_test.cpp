@@ -85,7 +85,7 @@ TEST_F(EvaluateTest, SequencesAreReportedByHalves) {
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_THAT(result.output, HasSubstr("sequences for tuning"));
   EXPECT_THAT(result.output, HasSubstr("sequences not tuned on"));
-  EXPECT_THAT(result.output, HasSubstr("| flat-spin/1 |"));
+  EXPECT_THAT(result.output, HasSubstr("| page-spin/1 |"));
 }
 
 TEST_F(EvaluateTest, NamesWhatIsWrong) {
