@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 
 #include <ros/callback_queue_interface.h>
@@ -45,20 +46,24 @@ class WaitingArrays {
     std::size_t events;
     Delivery deliver;
   };
+  /// Shared with the turns in the callback queue: roscpp may call one that it had already taken out
+  /// when the others were removed.
+  struct State {
+    LossHandler on_loss;
+    std::mutex mutex;  ///< guards what is below; held for a moment only
+    Limits limits;
+    bool ended = false;  ///< nothing is delivered any more
+    std::deque<Waiting> waiting;
+    std::size_t waiting_events = 0;
+    std::size_t lost_events = 0;  ///< in front of waiting
+    std::size_t turns = 0;        ///< in the callback queue; never fewer than waiting
+  };
   class Turn;
 
-  void deliverNext();
   std::uint64_t id() const { return reinterpret_cast<std::uintptr_t>(this); }
 
   ros::CallbackQueueInterface& queue_;
-  const LossHandler on_loss_;
-
-  std::mutex mutex_;  ///< guards what is below; held for a moment only
-  Limits limits_;
-  std::deque<Waiting> waiting_;
-  std::size_t waiting_events_ = 0;
-  std::size_t lost_events_ = 0;  ///< in front of waiting_
-  std::size_t turns_ = 0;        ///< in the callback queue; never fewer than waiting_
+  const std::shared_ptr<State> state_;
 };
 
 }  // namespace fast_edi
