@@ -141,6 +141,12 @@ std::uint32_t DeblurNode::latentQueue() const {
   return latent.isOn() ? std::max(static_cast<std::uint32_t>(images), kOutputQueue) : 0;
 }
 
+/// A queue that is longer than needed stays: its topic would come and go for nothing.
+bool DeblurNode::latentQueueFits() const {
+  const std::uint32_t needed = latentQueue();
+  return needed == latent_queue_ || (needed > 0 && needed < latent_queue_);
+}
+
 /// \pre latent_publisher_ is empty
 void DeblurNode::advertiseLatent() {
   latent_queue_ = latentQueue();
@@ -345,14 +351,14 @@ LiveParameters::Values DeblurNode::reconfigure(const LiveParameters::Values& wan
       driver_biases_.reset();
       putInForce(live_->loaded());
     }
-    if (latentQueue() != latent_queue_) {
+    if (!latentQueueFits()) {
       unfit = std::exchange(latent_publisher_, {});
     }
   });
   unfit.shutdown();
   bool latent_ended = false;
   guarded([&] {
-    if (!closing_ && latentQueue() != latent_queue_) {
+    if (!closing_ && !latentQueueFits()) {
       advertiseLatent();
       latent_ended = latent_queue_ == 0;
     }

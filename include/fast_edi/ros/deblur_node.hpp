@@ -87,6 +87,7 @@ class DeblurNode {
   void advertise();
   void advertiseLatent();
   std::uint32_t latentQueue() const;
+  bool latentQueueFits() const;
   void subscribersChanged();
   std::unique_ptr<Inputs> subscribe();
 
