@@ -25,6 +25,8 @@ constexpr std::uint32_t kLatestWins = 1;
 constexpr std::uint32_t kOutputQueue = 100;
 /// Frames whose latent images fit into their queue. One brings up to twice `latent_images` at once.
 constexpr int kLatentQueueFrames = 2;
+/// Room for 100 latent images for each exposure; a slow subscriber holds 36 MB at 346 x 260.
+constexpr std::uint32_t kLatentQueue = 400;
 /// A fraction of the shortest sensible close timeout.
 const ros::WallDuration kAdvancePeriod(0.004);
 const ros::WallDuration kReportPeriod(1.0);
@@ -37,6 +39,11 @@ constexpr std::size_t kWaitingShare = 4;
 DeblurParameters forPipeline(DeblurParameters parameters) {
   parameters.max_buffered_events -= parameters.max_buffered_events / kWaitingShare;
   return parameters;
+}
+
+/// \return queue that this many latent images need [images]
+std::uint32_t latentQueueFor(const LatentSampling& latent) {
+  return static_cast<std::uint32_t>(2 * kLatentQueueFrames * latent.per_exposure);
 }
 
 }  // namespace
@@ -68,20 +75,21 @@ DeblurNode::DeblurNode(const ros::NodeHandle& nh, const ros::NodeHandle& private
   }
   if (deblurrer_) {
     reconfigure_server_ = std::make_unique<ReconfigureServer>(
-        private_nh_, live_->values(),
+        side_thread_.handle(private_nh_), live_->values(),
         [this](const LiveParameters::Values& wanted) { return reconfigure(wanted); });
+    side_thread_.start();
   }
 }
 
 DeblurNode::~DeblurNode() {
+  // Each of these waits for callbacks at work, which may wait for the mutex.
+  side_thread_.stop();
+  reconfigure_server_.reset();
   std::unique_ptr<Inputs> ended;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    closing_ = true;
     ended = std::move(inputs_);
   }
-  // Each of these waits for callbacks at work, which may wait for the mutex.
-  reconfigure_server_.reset();
   ended.reset();
   report_timer_.stop();
   deblurred_publisher_.shutdown();
@@ -121,7 +129,8 @@ void DeblurNode::announceContrast() const {
 }
 
 void DeblurNode::advertise() {
-  image_transport::ImageTransport transport(nh_);
+  const ros::NodeHandle nh = side_thread_.handle(nh_);
+  image_transport::ImageTransport transport(nh);
   const image_transport::SubscriberStatusCallback image_changed =
       [this](const image_transport::SingleSubscriberPublisher&) { subscribersChanged(); };
   const ros::SubscriberStatusCallback info_changed = [this](const ros::SingleSubscriberPublisher&) {
@@ -132,30 +141,17 @@ void DeblurNode::advertise() {
                                 info_changed, info_changed);
   comparison_publisher_ =
       transport.advertise("comparison", kLatestWins, image_changed, image_changed);
-  advertiseLatent();
+  // Also while `latent_images` is 0: it may be changed while we run.
+  latent_queue_ = std::max(kLatentQueue, latentQueueFor(parameters_.deblur.latent));
+  latent_publisher_ =
+      transport.advertise("latent/image_raw", latent_queue_, image_changed, image_changed);
 }
 
-std::uint32_t DeblurNode::latentQueue() const {
-  const LatentSampling& latent = parameters_.deblur.latent;
-  const int images = 2 * kLatentQueueFrames * latent.per_exposure;
-  return latent.isOn() ? std::max(static_cast<std::uint32_t>(images), kOutputQueue) : 0;
-}
-
-/// A queue that is longer than needed stays: its topic would come and go for nothing.
-bool DeblurNode::latentQueueFits() const {
-  const std::uint32_t needed = latentQueue();
-  return needed == latent_queue_ || (needed > 0 && needed < latent_queue_);
-}
-
-/// \pre latent_publisher_ is empty
-void DeblurNode::advertiseLatent() {
-  latent_queue_ = latentQueue();
-  if (latent_queue_ > 0) {
-    const image_transport::SubscriberStatusCallback changed =
-        [this](const image_transport::SingleSubscriberPublisher&) { subscribersChanged(); };
-    latent_publisher_ = image_transport::ImageTransport(nh_).advertise(
-        "latent/image_raw", latent_queue_, changed, changed);
-  }
+/// Whether somebody listens to an output that has something to say.
+bool DeblurNode::isWanted() const {
+  return deblurred_publisher_.getNumSubscribers() > 0 ||
+         comparison_publisher_.getNumSubscribers() > 0 ||
+         (parameters_.deblur.latent.isOn() && latent_publisher_.getNumSubscribers() > 0);
 }
 
 std::unique_ptr<DeblurNode::Inputs> DeblurNode::subscribe() {
@@ -187,12 +183,10 @@ std::unique_ptr<DeblurNode::Inputs> DeblurNode::subscribe() {
 void DeblurNode::subscribersChanged() {
   std::unique_ptr<Inputs> ended;  // destroyed after the mutex is released
   guarded([this, &ended] {
-    if (closing_ || !parameters_.ros.lazy) {
+    if (!parameters_.ros.lazy) {
       return;
     }
-    const bool wanted = deblurred_publisher_.getNumSubscribers() > 0 ||
-                        comparison_publisher_.getNumSubscribers() > 0 ||
-                        latent_publisher_.getNumSubscribers() > 0;
+    const bool wanted = isWanted();
     if (wanted && !inputs_) {
       inputs_ = subscribe();
     } else if (!wanted && inputs_) {
@@ -333,7 +327,6 @@ void DeblurNode::putInForce(LoadedParameters parameters) {
 
 LiveParameters::Values DeblurNode::reconfigure(const LiveParameters::Values& wanted) {
   LiveParameters::Values in_force;
-  image_transport::Publisher unfit;
   guarded([&] {
     for (const std::string& refusal : live_->change(wanted)) {
       ++totals_.values_refused;
@@ -351,21 +344,15 @@ LiveParameters::Values DeblurNode::reconfigure(const LiveParameters::Values& wan
       driver_biases_.reset();
       putInForce(live_->loaded());
     }
-    if (!latentQueueFits()) {
-      unfit = std::exchange(latent_publisher_, {});
+    const std::uint32_t latent_queue = latentQueueFor(parameters_.deblur.latent);
+    if (latent_queue > latent_queue_) {
+      ROS_WARN_STREAM(name_ << ": the queue of " << latent_publisher_.getTopic() << " holds "
+                            << latent_queue_ << " images, expected " << latent_queue
+                            << " for this many latent images: slow subscribers may lose some;"
+                               " set latent_images before the node starts");
     }
   });
-  unfit.shutdown();
-  bool latent_ended = false;
-  guarded([&] {
-    if (!closing_ && !latentQueueFits()) {
-      advertiseLatent();
-      latent_ended = latent_queue_ == 0;
-    }
-  });
-  if (latent_ended) {
-    subscribersChanged();  // a subscriber that was left with the topic is none any more
-  }
+  subscribersChanged();  // those of latent images count only while there are any
   return in_force;
 }
 

@@ -1,13 +1,10 @@
 #include "fast_edi/ros/reconfigure_server.hpp"
 
-#include <optional>
 #include <string>
 #include <utility>
 
 #include <dynamic_reconfigure/Config.h>
 #include <dynamic_reconfigure/server.h>
-#include <ros/callback_queue.h>
-#include <ros/spinner.h>
 #include <boost/thread/recursive_mutex.hpp>
 
 #include "fast_edi/DeblurConfig.h"
@@ -77,24 +74,15 @@ class ServedConfig : public DeblurConfig {
 class ReconfigureServer::Impl {
  public:
   Impl(const ros::NodeHandle& private_nh, const Values& in_force, Handler handler)
-      : nh_(private_nh), handler_(std::move(handler)) {
-    ros::NodeHandle own_nh(private_nh);
-    own_nh.setCallbackQueue(&requests_);
-    server_.emplace(mutex_, own_nh);
-    server_->setCallback([this, in_force](ServedConfig& config, std::uint32_t /*level*/) {
+      : nh_(private_nh), handler_(std::move(handler)), server_(mutex_, private_nh) {
+    server_.setCallback([this, in_force](ServedConfig& config, std::uint32_t /*level*/) {
       if (last_.empty()) {
         takeOver(in_force, config);
       } else {
         change(config);
       }
     });
-    spinner_.start();
   }
-
-  /// The library's server cannot be destroyed while it answers a request.
-  ~Impl() { spinner_.stop(); }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
 
  private:
   void change(ServedConfig& config) {
@@ -136,9 +124,7 @@ class ReconfigureServer::Impl {
   Handler handler_;
   boost::recursive_mutex mutex_;
   Values last_;  ///< in force, as the server writes them
-  ros::CallbackQueue requests_;
-  std::optional<dynamic_reconfigure::Server<ServedConfig>> server_;
-  ros::AsyncSpinner spinner_{1, &requests_};
+  dynamic_reconfigure::Server<ServedConfig> server_;
 };
 
 ReconfigureServer::ReconfigureServer(const ros::NodeHandle& private_nh, const Values& in_force,

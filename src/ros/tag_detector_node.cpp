@@ -51,13 +51,15 @@ TagDetectorNode::TagDetectorNode(const ros::NodeHandle& nh, const ros::NodeHandl
   }
   report_timer_ =
       nh_.createSteadyTimer(kReportPeriod, [this](const ros::SteadyTimerEvent&) { report(); });
+  side_thread_.start();
 }
 
 TagDetectorNode::~TagDetectorNode() {
+  side_thread_.stop();
+  inputs_.reset();
   report_timer_.stop();
   detections_publisher_.shutdown();
   annotated_publisher_.shutdown();
-  inputs_.reset();
 }
 
 void TagDetectorNode::configure() {
@@ -78,9 +80,10 @@ void TagDetectorNode::advertise() {
   };
   const image_transport::SubscriberStatusCallback image_changed =
       [this](const image_transport::SingleSubscriberPublisher&) { subscribersChanged(); };
+  ros::NodeHandle nh = side_thread_.handle(nh_);
   detections_publisher_ =
-      nh_.advertise<visualization_msgs::MarkerArray>("detections", kOutputQueue, changed, changed);
-  annotated_publisher_ = image_transport::ImageTransport(nh_).advertise(
+      nh.advertise<visualization_msgs::MarkerArray>("detections", kOutputQueue, changed, changed);
+  annotated_publisher_ = image_transport::ImageTransport(nh).advertise(
       "image_annotated", kLatestWins, image_changed, image_changed);
 }
 

@@ -83,16 +83,17 @@ class Reconfigurer {
 /// Changes parameters through the node's service all the time, while frames close. A process of its
 /// own: with both ends in one, ThreadSanitizer reports the locks of roscpp's connections.
 /// - contrast_threshold_on: out of range, from biases, and two values of its own
-/// - latent_images: more of them take another publisher
+/// - latent_images: a film that begins and ends
 const char* const kTuner = R"(
-import itertools, rospy, time
+import itertools, rospy, signal, time
 from dynamic_reconfigure.msg import BoolParameter, Config, DoubleParameter, IntParameter
 from dynamic_reconfigure.srv import Reconfigure
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # the end, without a word
 call = rospy.ServiceProxy('/camera/deblur/set_parameters', Reconfigure)
 for i in itertools.count():
     try:
         call(Config(doubles=[DoubleParameter('contrast_threshold_on', 0.1 * (i % 4 - 1))],
-                    ints=[IntParameter('latent_images', 40 if i % 16 == 0 else 1)],
+                    ints=[IntParameter('latent_images', 4 if i % 4 == 0 else 0)],
                     bools=[BoolParameter('filter', i % 2 == 0)]))
     except rospy.ServiceException:
         pass  # there is no node at the moment

@@ -29,17 +29,18 @@
 #include "fast_edi/ros/message_frame_sink.hpp"
 #include "fast_edi/ros/node_diagnostics.hpp"
 #include "fast_edi/ros/reconfigure_server.hpp"
+#include "fast_edi/ros/side_thread.hpp"
 
 namespace fast_edi {
 
 /// Threads. Callbacks come from the node handles' callback queue. Events, frames and exposures have
 /// to be handled in the order of their arrival, so that queue must call one callback at a time: a
 /// nodelet's getNodeHandle() whatever the number of the manager's worker threads, or ros::spin(). A
-/// queue that calls several at once does no harm beyond that order. Changes of parameters come from
-/// the thread of ReconfigureServer.
+/// queue that calls several at once does no harm beyond that order. Changes of parameters, and
+/// subscribers that come and go, are handled by a SideThread.
 ///
-/// mutex_ guards all members that callbacks use: everything from sink_ on, live_, parameters_,
-/// driver_biases_ and closing_. Each callback holds it from beginning to end. It is needed even
+/// mutex_ guards all members that callbacks use: everything from sink_ on, live_, parameters_
+/// and driver_biases_. Each callback holds it from beginning to end. It is needed even
 /// with a queue as above, which runs already while the constructor is at work, and still while the
 /// destructor is.
 ///
@@ -47,14 +48,14 @@ namespace fast_edi {
 /// waiting_arrays.hpp.
 ///
 /// Order of locks: that of ReconfigureServer, mutex_, then any lock inside ROS (publishing,
-/// subscribing, diagnostics) or of WaitingArrays. The server is constructed and destroyed without
-/// mutex_. The other way round would be to hold mutex_ while waiting for a callback to end, which
-/// may be waiting for mutex_. So what waits for callbacks (ending subscriptions, timers and
-/// publishers) is done without holding it.
+/// subscribing, diagnostics) or of WaitingArrays. The SideThread is stopped without mutex_. The
+/// other way round would be to hold mutex_ while waiting for a callback to end, which may be
+/// waiting for mutex_. So what waits for callbacks (ending subscriptions, timers and publishers) is
+/// done without holding it.
 ///
-/// Closing. First requests to change parameters, the inputs and the clock end, then the report,
-/// then the publishers: at no time can a callback meet a publisher that is gone. Subscribers that
-/// come and go meanwhile find closing_ set.
+/// Closing. First the SideThread ends, then the inputs and the clock, then the report, then the
+/// publishers, which are never replaced before: at no time can a callback meet a publisher that is
+/// gone.
 ///
 /// No exception leaves a callback: one that gets here is logged, reported and the pipeline starts
 /// anew.
@@ -85,9 +86,7 @@ class DeblurNode {
 
   void configure();
   void advertise();
-  void advertiseLatent();
-  std::uint32_t latentQueue() const;
-  bool latentQueueFits() const;
+  bool isWanted() const;
   void subscribersChanged();
   std::unique_ptr<Inputs> subscribe();
 
@@ -129,7 +128,6 @@ class DeblurNode {
   dynamic_reconfigure::ConfigConstPtr driver_biases_;  ///< the last that could be used
 
   std::mutex mutex_;
-  bool closing_ = false;  ///< the destructor is at work
   std::optional<MessageFrameSink> sink_;
   std::unique_ptr<Deblurrer> deblurrer_;  ///< null when idle for good
   ComparisonView comparison_;
@@ -143,12 +141,13 @@ class DeblurNode {
 
   image_transport::CameraPublisher deblurred_publisher_;
   image_transport::Publisher comparison_publisher_;
-  image_transport::Publisher latent_publisher_;  ///< empty when `latent_images` is 0
-  std::uint32_t latent_queue_ = 0;               ///< of that publisher
+  image_transport::Publisher latent_publisher_;
+  std::uint32_t latent_queue_ = 0;  ///< of that publisher [images]
   std::optional<diagnostic_updater::Updater> updater_;
   ros::SteadyTimer report_timer_;
   std::unique_ptr<Inputs> inputs_;                         ///< null while nobody listens
   std::unique_ptr<ReconfigureServer> reconfigure_server_;  ///< none when idle for good
+  SideThread side_thread_;
 };
 
 }  // namespace fast_edi

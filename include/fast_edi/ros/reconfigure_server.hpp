@@ -17,15 +17,16 @@ namespace fast_edi {
 /// parameter server show what is in force after each request. The parameter server has no contrast
 /// threshold while it comes from biases: a later start with 0 would be refused.
 ///
-/// Threads. Requests are answered in a thread of this object's own, one at a time, so that events
-/// need not wait for the parameter server. The handler may take the caller's mutex; the caller must
-/// not hold that mutex while it destroys this object, which waits for a request at work.
+/// Threads. Requests are answered in the thread of the node handle's queue: let that be a
+/// SideThread, so that events need not wait for the parameter server, and stop it before destroying
+/// this object, which the library's server does not survive while it answers a request.
 class ReconfigureServer {
  public:
   /// \param wanted values that differ from those in force
   /// \return all values in force afterwards
   using Handler = std::function<LiveParameters::Values(const LiveParameters::Values& wanted)>;
 
+  /// \param private_nh of the node, with the queue for requests
   /// \param in_force all live parameters; the handler is not called with them
   ReconfigureServer(const ros::NodeHandle& private_nh, const LiveParameters::Values& in_force,
                     Handler handler);

@@ -20,6 +20,7 @@
 #include "fast_edi/config/tag_detector_parameters.hpp"
 #include "fast_edi/core/sequence_gaps.hpp"
 #include "fast_edi/ros/latency_record.hpp"
+#include "fast_edi/ros/side_thread.hpp"
 #include "fast_edi/ros/tag_diagnostics.hpp"
 #include "fast_edi/ros/throttled_warnings.hpp"
 #include "fast_edi/tags/tag_detector.hpp"
@@ -85,6 +86,7 @@ class TagDetectorNode {
   std::optional<diagnostic_updater::Updater> updater_;
   ros::SteadyTimer report_timer_;
   std::unique_ptr<Inputs> inputs_;  ///< null while nobody listens
+  SideThread side_thread_;          ///< for subscribers that come and go
 };
 
 }  // namespace fast_edi

@@ -1,0 +1,49 @@
+/// \file
+/// A callback queue with a thread of its own, for what need not and must not share the thread of
+/// the inputs.
+#pragma once
+
+#include <atomic>
+#include <thread>
+
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+
+namespace fast_edi {
+
+/// One thread that calls the callbacks of one queue, in order. Here: requests to change parameters,
+/// and subscribers of the outputs that come and go.
+///
+/// Why the latter need it: roscpp queues the callback for a new subscriber without looking whether
+/// its publisher is just ending (Publication::peerConnect takes no lock), so it may be queued after
+/// the publisher is gone, and image_transport's callback then works on freed memory. With this
+/// class: stop() first, end the publishers then; what is still queued is never called.
+class SideThread {
+ public:
+  SideThread() = default;
+  /// Waits for a callback at work: the caller must hold no lock that this may want.
+  ~SideThread() { stop(); }
+  SideThread(const SideThread&) = delete;
+  SideThread& operator=(const SideThread&) = delete;
+
+  /// The same node and namespace, with callbacks in this thread.
+  ros::NodeHandle handle(const ros::NodeHandle& nh);
+
+  /// Where handle() puts callbacks.
+  ros::CallbackQueueInterface& queue() { return queue_; }
+
+  /// From now on callbacks are called, those that are queued already too. Once; nothing after
+  /// stop().
+  void start();
+
+  /// No callback is called any more, whatever is still queued or comes; final. Waits for one at
+  /// work: the caller must hold no lock that this may want.
+  void stop();
+
+ private:
+  ros::CallbackQueue queue_;
+  std::atomic<bool> stopped_{false};
+  std::thread thread_;
+};
+
+}  // namespace fast_edi
