@@ -20,6 +20,7 @@ constexpr NumberRange kLatentImages{0.0, kMaxLatentImages};
 constexpr NumberRange kOffsetDn{0.0, 255.0};
 constexpr NumberRange kFilterRange{0.0, 10.0, true};
 constexpr NumberRange kFilterSigmaPx{0.0, 10.0, true};
+constexpr NumberRange kFilterRestore{0.0, static_cast<double>(GainRestoration::kMaxStrength)};
 constexpr NumberRange kFrameNoiseDn{0.0, 50.0, true};
 
 using TimeMember = std::int64_t DeblurParameters::*;
@@ -165,6 +166,13 @@ std::vector<ConfigKey> filterKeys() {
                 kFilterSigmaPx,
                 [](double value, ParameterDraft& draft) {
                   draft.loaded.deblur.filter.gain.spatial_sigma_px = static_cast<float>(value);
+                }),
+      numberKey({"filter_gain_restore", "", numberText(static_cast<double>(defaults.gain.restore)),
+                 "fraction by which structure of the log gains is raised: what that smoothing and "
+                 "the photoreceptor have lowered; 0 = off"},
+                kFilterRestore,
+                [](double value, ParameterDraft& draft) {
+                  draft.loaded.deblur.filter.gain.restore = static_cast<float>(value);
                 }),
       boolKey({"filter_frame_noise", "", boolText(defaults.frame_noise),
                "take read and shot noise out of the latent image"},

@@ -44,6 +44,7 @@ GainFilter::GainFilter(SensorSize size, const Settings& settings)
     : size_(size),
       settings_(settings),
       smoother_(size, {settings.range_log, settings.spatial_sigma_px, 1}),
+      restoration_(size, settings.restore),
       log_gain_(size.pixelCount()),
       despeckled_(size.pixelCount()),
       lowest_(static_cast<std::size_t>(size.width)),
@@ -56,6 +57,9 @@ void GainFilter::apply(float* gain) {
   }
   if (settings_.smooth) {
     smoother_.apply(log_gain_.data(), log_gain_.data());
+  }
+  if (settings_.restore > 0.0F) {
+    restoration_.apply(log_gain_.data());
   }
   expOf(log_gain_.data(), log_gain_.size(), gain);
 }

@@ -19,6 +19,11 @@ void requirePositive(const char* name, double value) {
 void validate(const FilterParameters& parameters) {
   requirePositive("filter_gain_range", static_cast<double>(parameters.gain.range_log));
   requirePositive("filter_gain_sigma_px", static_cast<double>(parameters.gain.spatial_sigma_px));
+  const float restore = parameters.gain.restore;
+  if (!(restore >= 0.0F && restore <= GainRestoration::kMaxStrength)) {
+    throw std::invalid_argument("filter_gain_restore is " + std::to_string(restore) +
+                                ", expected 0 to " + std::to_string(GainRestoration::kMaxStrength));
+  }
   requirePositive("frame_noise_dn", parameters.frame_noise_dn);
 }
 

@@ -41,6 +41,7 @@ TEST(GainFilter, AHotPixelLeavesNoSpeck) {
 TEST(GainFilter, AThinLineStays) {
   GainFilter::Settings settings;
   settings.smooth = false;
+  settings.restore = 0.0F;
   GainFilter filter(kSize, settings);
   std::vector<float> gain = unitGains();
   for (int y = 0; y < kSize.height; ++y) {
@@ -53,8 +54,10 @@ TEST(GainFilter, AThinLineStays) {
   }
 }
 
-TEST(GainFilter, AStrongEdgeStaysWhereItIs) {
-  GainFilter filter(kSize, {});
+TEST(GainFilter, SmoothingLeavesAStrongEdgeAsItIs) {
+  GainFilter::Settings settings;
+  settings.restore = 0.0F;
+  GainFilter filter(kSize, settings);
   std::vector<float> gain = unitGains();
   for (int y = 0; y < kSize.height; ++y) {
     for (int x = 20; x < kSize.width; ++x) {
@@ -91,6 +94,7 @@ TEST(GainFilter, EachPieceCanBeSwitchedOff) {
   GainFilter::Settings off;
   off.despeckle = false;
   off.smooth = false;
+  off.restore = 0.0F;
   GainFilter filter(kSize, off);
   std::vector<float> gain = unitGains();
   gain[indexOf(5, 5)] = 3.0F;

@@ -62,6 +62,7 @@ TEST(LatentImage, EachPieceCanBeSwitchedOff) {
   FilterParameters parameters;
   parameters.gain.despeckle = false;
   parameters.gain.smooth = false;
+  parameters.gain.restore = 0.0F;
   parameters.frame_noise = false;
   LatentImage image(parameters);
   Fixture f;

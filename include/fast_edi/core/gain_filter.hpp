@@ -9,11 +9,13 @@
 ///    neighbour confirms, a hot pixel, a pixel out of range has no effect. (Lines one pixel wide
 ///    stay: they go on in a neighbour.)
 /// 2. Smooth: EdgePreservingFilter over 5 x 5 pixels.
+/// 3. Restore: GainRestoration.
 #pragma once
 
 #include <vector>
 
 #include "fast_edi/core/edge_preserving_filter.hpp"
+#include "fast_edi/core/gain_restoration.hpp"
 #include "fast_edi/core/types.hpp"
 
 namespace fast_edi {
@@ -24,7 +26,8 @@ class GainFilter {
     bool despeckle = true;
     bool smooth = true;
     float range_log = 0.35F;        ///< what counts as an edge of the log gain [natural log], > 0
-    float spatial_sigma_px = 1.2F;  ///< [px], > 0
+    float spatial_sigma_px = 0.9F;  ///< [px], > 0
+    float restore = 0.35F;          ///< strength of GainRestoration, 0 = none
   };
 
   /// \throws std::invalid_argument when a setting is out of range
@@ -40,6 +43,7 @@ class GainFilter {
   SensorSize size_;
   Settings settings_;
   EdgePreservingFilter smoother_;
+  GainRestoration restoration_;
   std::vector<float> log_gain_;
   std::vector<float> despeckled_;
   std::vector<float> lowest_;  ///< of the neighbours of one row
