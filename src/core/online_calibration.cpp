@@ -44,9 +44,18 @@ constexpr double kDelayRidge = 0.1;
 /// What is not to be learned is tied to its nominal value.
 constexpr double kTied = 1e12;
 /// Weight of what was learned before, each time a pair is added.
-constexpr double kForgetting = 0.8;
+constexpr double kForgetting = 0.9;
 constexpr double kLargestCorrection = 0.3;  ///< of a threshold, relative to nominal
-constexpr double kLargestDelay_ms = 5.0;
+constexpr double kLargestDelay_ms = 5.0;    ///< of the events, in the mean
+/// Pairs of frames tell a threshold no better than to a few per cent. Of a correction, nothing is
+/// taken up to kDoubtfulCorrection, all from kSureCorrection on, relative to nominal.
+constexpr double kDoubtfulCorrection = 0.06;
+constexpr double kSureCorrection = 0.1;
+/// ln 2: behind a first-order low-pass of time constant tau, events are late by tau in the mean,
+/// which is what the fit finds, but an edge has half of its height after tau ln 2. With this shift
+/// the latent image has it in its place (and least squared error). Events ahead of the light come
+/// from clocks that differ, and such a shift is taken whole.
+constexpr double kEdgeDelayPerMeanDelay = 0.693147180559945;
 
 /// Smaller changes are not taken over, so that most pairs of frames were closed alike.
 constexpr double kNoticeableCorrection = 0.01;  ///< of a threshold, relative
@@ -95,8 +104,12 @@ double limited(double value, double lowest, double highest) {
   return std::min(std::max(value, lowest), highest);
 }
 
-double limitedThreshold(double value, double nominal) {
-  return limited(value, (1.0 - kLargestCorrection) * nominal, (1.0 + kLargestCorrection) * nominal);
+/// What is taken over of a threshold that was found.
+double correctedThreshold(double found, double nominal) {
+  const double correction = limited(found / nominal - 1.0, -kLargestCorrection, kLargestCorrection);
+  const double sure =
+      (std::abs(correction) - kDoubtfulCorrection) / (kSureCorrection - kDoubtfulCorrection);
+  return nominal * (1.0 + limited(sure, 0.0, 1.0) * correction);
 }
 
 }  // namespace
@@ -287,13 +300,18 @@ void OnlineCalibration::takeOver() {
 
   Calibration wanted{nominal_, 0};
   if (settings_.contrast) {
-    wanted.thresholds = {limitedThreshold(theta[0], nominal_.on),
-                         limitedThreshold(theta[1], nominal_.off)};
+    wanted.thresholds = {correctedThreshold(theta[0], nominal_.on),
+                         correctedThreshold(theta[1], nominal_.off)};
   }
   if (settings_.delay) {
-    const double delay_ms = limited(theta[2], -kLargestDelay_ms, kLargestDelay_ms);
+    // That which goes with these thresholds, whether or not they are those of the fit.
+    const double delay_ms = (learned_.vector[2] - learned_.matrix(2, 0) * wanted.thresholds.on -
+                             learned_.matrix(2, 1) * wanted.thresholds.off) /
+                            (learned_.matrix(2, 2) + kDelayRidge);
     wanted.event_delay_ns =
-        static_cast<std::int64_t>(delay_ms * static_cast<double>(kNanosecondsPerMillisecond));
+        static_cast<std::int64_t>((delay_ms > 0.0 ? kEdgeDelayPerMeanDelay : 1.0) *
+                                  limited(delay_ms, -kLargestDelay_ms, kLargestDelay_ms) *
+                                  static_cast<double>(kNanosecondsPerMillisecond));
   }
   const auto differs = [](double a, double b) {
     return std::abs(a - b) > kNoticeableCorrection * b;

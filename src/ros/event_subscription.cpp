@@ -108,7 +108,7 @@ void EventSubscription::handOver(const ros::MessageEvent<const EventArray>& even
 void EventSubscription::subscribeToPointers() {
   replaceBy(subscribe<dvs_msgs::EventArray>(
                 [this](const ros::MessageEvent<const dvs_msgs::EventArray>& event) {
-                  const dvs_msgs::EventArray::ConstPtr array = event.getConstMessage();
+                  const dvs_msgs::EventArray::ConstPtr& array = event.getConstMessage();
                   waiting_.add(array->events.size(), [this, array, since_ns = steadyNow()] {
                     handler_(packGeneratedEvents(array->events, records_), sensorSize(*array),
                              array->header.seq, since_ns);

@@ -127,11 +127,14 @@ class PassingConsumer {
     ros::NodeHandle nh(kNamespace);
     nh.setCallbackQueue(&queue);
     std::size_t seen = 0;
-    ros::Time last;
+    sensor_msgs::ImageConstPtr last;
     const ros::Subscriber subscriber = nh.subscribe<sensor_msgs::Image>(
         topic_, 100, [this, &seen, &last](const sensor_msgs::ImageConstPtr& image) {
-          out_of_order_ += image->header.stamp <= last ? 1 : 0;
-          last = image->header.stamp;
+          if (image == last) {
+            return;  // roscpp connects twice within a process when both ends come at once
+          }
+          out_of_order_ += last && image->header.stamp <= last->header.stamp ? 1 : 0;
+          last = image;
           ++seen;
           ++images_;
         });

@@ -1,7 +1,7 @@
 /// \file
 /// What bias settings and stamps leave open, learned from the recording itself: the contrast
 /// thresholds (biases give them to some 10 %) and the delay of the events behind the frames (the
-/// photoreceptor's bandwidth, 0.5 ms in bright and 5 ms in dim light, and offsets of the clocks).
+/// photoreceptor's bandwidth: 0.5 ms in bright and 5 ms in dim light).
 ///
 /// Two consecutive frames and the events of both exposures and in between say the same thing twice.
 /// With B the blurry frames, E their double integrals and l the change of level by the events
@@ -23,9 +23,12 @@
 /// Fit: least squares over pixels that tell something (|x_on - x_off| >= 3, hardly any events back
 /// and forth, no grey level near black or saturation), weighted by the square of the intensity
 /// (events of dark pixels come later than those of bright ones, in which errors are seen), robust
-/// (Cauchy weights), with a ridge
-/// towards the nominal values, exponential forgetting, and limits: thresholds within 30 % of
-/// nominal, the delay within 5 ms.
+/// (Cauchy weights), with a ridge towards the nominal values, exponential forgetting, and limits:
+/// thresholds within 30 % of nominal, the delay within 5 ms.
+///
+/// What is taken over: thresholds only when they differ from nominal by more than such a fit can be
+/// wrong (6 to 10 %); of the delay ln 2, where edges behind a low-pass have half of their height.
+/// An offset between the clocks is no low-pass: it belongs into `time_offset`.
 ///
 /// Each pair is used until kEagerFits have told something, then one of kRestFrames. A pair of more
 /// than Settings::most_events tells more than enough: a band of rows with about that many is used,
@@ -51,7 +54,8 @@ namespace fast_edi {
 /// What is learned.
 struct Calibration {
   ContrastThresholds thresholds;
-  std::int64_t event_delay_ns = 0;  ///< events come this much after the light that they report
+  /// By this much the events of an edge come after its light, half of them earlier. [ns]
+  std::int64_t event_delay_ns = 0;
 };
 
 /// What became of a frame.

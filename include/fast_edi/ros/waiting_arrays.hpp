@@ -43,7 +43,7 @@ class WaitingArrays {
 
  private:
   struct Waiting {
-    std::size_t events;
+    std::size_t events = 0;
     Delivery deliver;
   };
   /// Shared with the turns in the callback queue: roscpp may call one that it had already taken out
