@@ -116,12 +116,13 @@ def memory(results, table):
 def tcpros(results, table):
     for rate, array_ms in ((100, 1), (100, 10), (40, 33)):
         case = '%d Mev/s, arrays of %d ms' % (rate, array_ms)
+        what = 'nodelet over TCPROS, arrays of %d ms, max_buffered_events 40 M' % array_ms
         found = results.tcpros.get(case)
         if found is None:
-            table.missing('nodelet over TCPROS, arrays of %d ms' % array_ms, case)
+            table.missing(what, case)
             continue
         met = found['nothing_lost'] and found['throughput_mev_s'] >= 0.99 * rate
-        table.add('nodelet over TCPROS, arrays of %d ms' % array_ms, '>= %d Mev/s, none lost' % rate,
+        table.add(what, '>= %d Mev/s, none lost' % rate,
                   '%.1f Mev/s, %s, %.0f %% of a core' % (
                       found['throughput_mev_s'],
                       'none lost' if found['nothing_lost'] else 'LOSSES (tcpros.json)',

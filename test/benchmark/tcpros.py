@@ -39,6 +39,8 @@ class Case:
         self.seconds = seconds
         self.unpaced = unpaced
         self.defaults = defaults
+        # At several times what sensors deliver, the default holds no more than a tenth of a second.
+        self.max_buffered_events = 13000000 if rate_mev_s <= 13 else 40000000
 
     def arguments(self):
         arguments = ['--rate', str(self.rate_mev_s), '--array', str(self.array_ms),
@@ -134,6 +136,7 @@ def measure(case, nodelet_processor, other_processors):
     rospy.set_param(NODELET + '/contrast_threshold_off', 0.3)
     if rospy.has_param(NODELET + '/filter'):
         rospy.delete_param(NODELET + '/filter')
+    rospy.set_param(NODELET + '/max_buffered_events', case.max_buffered_events)
     if not case.defaults:
         rospy.set_param(NODELET + '/filter', False)
     nodelet = [find_program('nodelet', 'nodelet'), 'standalone', 'fast_edi/DeblurNodelet',

@@ -1,6 +1,7 @@
 #include "rostest/child_process.hpp"
 
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -22,6 +23,7 @@ ChildProcess::ChildProcess(std::vector<std::string> command) {
   argv.push_back(nullptr);
   pid_ = fork();
   if (pid_ == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that crashes leaves nothing behind
     signal(SIGINT, SIG_DFL);  // a shell that runs the tests in the background ignores it
     execvp(argv[0], argv.data());
     _exit(kNotFound);
