@@ -19,7 +19,7 @@ namespace fast_edi {
 namespace {
 
 constexpr std::uint32_t kEventQueue = 1000;
-constexpr std::uint32_t kImageQueue = 100;
+constexpr std::uint32_t kImageQueue = 300;
 constexpr std::uint32_t kExposureQueue = 100;
 constexpr std::uint32_t kLatestWins = 1;
 constexpr std::uint32_t kOutputQueue = 100;
