@@ -19,8 +19,8 @@ namespace fast_edi {
 namespace {
 
 constexpr std::uint32_t kEventQueue = 1000;
-constexpr std::uint32_t kImageQueue = 300;
-constexpr std::uint32_t kExposureQueue = 300;
+constexpr std::uint32_t kImageQueue = 100;
+constexpr std::uint32_t kExposureQueue = 100;
 constexpr std::uint32_t kLatestWins = 1;
 constexpr std::uint32_t kOutputQueue = 100;
 /// Frames whose latent images fit into their queue. One brings up to twice `latent_images` at once.
