@@ -69,18 +69,19 @@ void GainRestoration::removeRow(const float* row) {
 void GainRestoration::meansOfRow(int y) {
   const int rows = std::min(y + kRadius, size_.height - 1) - std::max(y - kRadius, 0) + 1;
   const float per_row = 1.0F / (kUnitsPerLog * static_cast<float>(rows));
+  const auto column = [this](int x) { return column_sums_[static_cast<std::size_t>(x)]; };
   std::int32_t sum = 0;
   int columns = 0;
   for (int x = 0; x < std::min(kRadius, size_.width); ++x, ++columns) {
-    sum += column_sums_[static_cast<std::size_t>(x)];
+    sum += column(x);
   }
   for (int x = 0; x < size_.width; ++x) {
     if (x + kRadius < size_.width) {
-      sum += column_sums_[static_cast<std::size_t>(x + kRadius)];
+      sum += column(x + kRadius);
       ++columns;
     }
     if (x > kRadius) {
-      sum -= column_sums_[static_cast<std::size_t>(x - kRadius - 1)];
+      sum -= column(x - kRadius - 1);
       --columns;
     }
     means_[static_cast<std::size_t>(x)] =

@@ -88,7 +88,7 @@ TEST(GainRestoration, AGainThatIsTheSameAllOverStays) {
 }
 
 TEST(GainRestoration, RaisesFineStructureAndHardlyAnyNoise) {
-  const auto raisedBy = [](float amplitude) {
+  const auto raised_by = [](float amplitude) {
     std::vector<float> plane(kSize.pixelCount());
     for (std::size_t i = 0; i < plane.size(); ++i) {
       plane[i] = i % 2 == 0 ? amplitude : -amplitude;  // width is odd: a chequerboard
@@ -96,8 +96,8 @@ TEST(GainRestoration, RaisesFineStructureAndHardlyAnyNoise) {
     GainRestoration(kSize, kStrength).apply(plane.data());
     return plane[indexOf(kSize, 20, 14)] / amplitude;
   };
-  EXPECT_NEAR(raisedBy(0.3F), 1.0F + kStrength, 0.02F);
-  EXPECT_LT(raisedBy(0.02F), 1.05F);
+  EXPECT_NEAR(raised_by(0.3F), 1.0F + kStrength, 0.02F);
+  EXPECT_LT(raised_by(0.02F), 1.05F);
 }
 
 TEST(GainRestoration, AStrongEdgeGrowsByNoMoreThanItsLimit) {
