@@ -24,7 +24,7 @@ ChildProcess::ChildProcess(std::vector<std::string> command) {
   pid_ = fork();
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that crashes leaves nothing behind
-    signal(SIGINT, SIG_DFL);  // a shell that runs the tests in the background ignores it
+    signal(SIGINT, SIG_DFL);           // a shell that runs the tests in the background ignores it
     execvp(argv[0], argv.data());
     _exit(kNotFound);
   }
