@@ -137,11 +137,13 @@ CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraR
   loadLogLatent(frame, response);
   const Calibration before = in_force_;
   CalibrationOutcome outcome = CalibrationOutcome::kNoPair;
+  std::uint64_t gathered_events = 0;
   if (have_previous_ && frame.window.start_ns >= previous_window_.end_ns) {
     if (isHole(lists, previous_window_, frame.window)) {
       outcome = CalibrationOutcome::kNoEventsBetween;
     } else {
       const Band band = gather(frame, lists);
+      gathered_events = eventsIn(lists, {previous_window_.start_ns, frame.window.end_ns});
       NormalEquations pair;
       outcome = CalibrationOutcome::kTooFewPixels;
       if (fit(band, pair) >= kLeastPixels) {
@@ -161,6 +163,17 @@ CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraR
                    in_force_.event_delay_ns == before.event_delay_ns;
   if (outcome == CalibrationOutcome::kFitted && fits_ >= kEagerFits) {
     resting_ = kRestFrames;
+    have_previous_ = false;
+  }
+  if (outcome == CalibrationOutcome::kFitted) {
+    useless_pairs_ = 0;
+  } else if (outcome != CalibrationOutcome::kNoPair && ++useless_pairs_ >= kPatience) {
+    resting_ = kRestFrames;
+    have_previous_ = false;
+  }
+  // What it costs to go through a pair of so many events is spread over as many frames.
+  if (gathered_events > settings_.most_events) {
+    resting_ = std::max(resting_, static_cast<int>(gathered_events / settings_.most_events));
     have_previous_ = false;
   }
   return outcome;

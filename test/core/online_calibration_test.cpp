@@ -220,6 +220,33 @@ TEST_F(OnlineCalibrationPair, NoiseAloneTeachesNothing) {
   EXPECT_EQ(calibration.inForce().thresholds, kTrue);
 }
 
+TEST_F(OnlineCalibrationPair, RestsWhenNothingIsToBeLearned) {
+  eventsIn(0, (OnlineCalibration::kPatience + 1) * kPeriod_ns);
+  for (int i = 0; i <= OnlineCalibration::kPatience; ++i) {
+    EXPECT_TRUE(calibration.wantsNextFrame()) << i;
+    addFrame(i * kPeriod_ns);
+  }
+  for (int i = 0; i < OnlineCalibration::kRestFrames; ++i) {
+    EXPECT_FALSE(calibration.wantsNextFrame()) << i;
+    EXPECT_EQ(calibration.neededFrom(), INT64_MAX);
+    calibration.skipFrame();
+  }
+  EXPECT_TRUE(calibration.wantsNextFrame());
+}
+
+TEST_F(OnlineCalibrationPair, RestsAfterAPairOfManyEventsInProportion) {
+  eventsIn(0, kPeriod_ns + kExposure_ns);
+  const std::uint64_t events = lists.lowerBound(kPeriod_ns + kExposure_ns);
+  calibration = OnlineCalibration(kSize, kTrue, {true, true, events / 3});
+  addFrame(0);
+  addFrame(kPeriod_ns);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(calibration.wantsNextFrame()) << i;
+    calibration.skipFrame();
+  }
+  EXPECT_TRUE(calibration.wantsNextFrame());
+}
+
 TEST_F(OnlineCalibrationPair, AfterAnInterruptionTheNextFrameHasNoPartner) {
   eventsIn(0, kPeriod_ns + kExposure_ns);
   addFrame(0);

@@ -30,9 +30,10 @@
 /// wrong (6 to 10 %); of the delay ln 2, where edges behind a low-pass have half of their height.
 /// An offset between the clocks is no low-pass: it belongs into `time_offset`.
 ///
-/// Each pair is used until kEagerFits have told something, then one of kRestFrames. A pair of more
+/// Each pair is used until kEagerFits have told something, then one of kRestFrames; the same while
+/// kPatience pairs on end have told nothing. A pair of more
 /// than Settings::most_events tells more than enough: a band of rows with about that many is used,
-/// and the next pair takes the next band.
+/// the next pair takes the next band, and comes later by a frame for each most_events.
 ///
 /// Recordings without events between exposures exist (a driver dropped them); there the fit would
 /// be wrong and is not made.
@@ -70,6 +71,7 @@ class OnlineCalibration {
  public:
   static constexpr int kEagerFits = 20;
   static constexpr int kRestFrames = 10;
+  static constexpr int kPatience = 5;
 
   struct Settings {
     bool contrast = true;                   ///< learn the thresholds
@@ -140,8 +142,9 @@ class OnlineCalibration {
   Calibration in_force_;
   NormalEquations learned_;
   int fits_ = 0;
-  int resting_ = 0;   ///< frames until the next one is needed
-  int next_row_ = 0;  ///< of the next band
+  int useless_pairs_ = 0;  ///< since the last fit
+  int resting_ = 0;        ///< frames until the next one is needed
+  int next_row_ = 0;       ///< of the next band
 
   bool have_previous_ = false;
   ExposureInterval previous_window_;
