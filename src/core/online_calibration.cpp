@@ -135,15 +135,14 @@ std::int64_t OnlineCalibration::neededFrom() const {
 CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraResponse& response,
                                                const PixelEventLists& lists) {
   loadLogLatent(frame, response);
+  resting_ = 0;
   const Calibration before = in_force_;
   CalibrationOutcome outcome = CalibrationOutcome::kNoPair;
-  std::uint64_t gathered_events = 0;
   if (have_previous_ && frame.window.start_ns >= previous_window_.end_ns) {
     if (isHole(lists, previous_window_, frame.window)) {
       outcome = CalibrationOutcome::kNoEventsBetween;
     } else {
       const Band band = gather(frame, lists);
-      gathered_events = eventsIn(lists, {previous_window_.start_ns, frame.window.end_ns});
       NormalEquations pair;
       outcome = CalibrationOutcome::kTooFewPixels;
       if (fit(band, pair) >= kLeastPixels) {
@@ -158,24 +157,15 @@ CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraR
   previous_log_latent_.swap(log_latent_);
   previous_window_ = frame.window;
   previous_reference_ns_ = frame.reference_ns;
-  // The next frame will be closed otherwise than this one: no pair.
-  have_previous_ = in_force_.thresholds == before.thresholds &&
-                   in_force_.event_delay_ns == before.event_delay_ns;
-  if (outcome == CalibrationOutcome::kFitted && fits_ >= kEagerFits) {
-    resting_ = kRestFrames;
-    have_previous_ = false;
-  }
   if (outcome == CalibrationOutcome::kFitted) {
     useless_pairs_ = 0;
+    resting_ = std::max(resting_, fits_ >= kEagerFits ? kRestFrames : 0);
   } else if (outcome != CalibrationOutcome::kNoPair && ++useless_pairs_ >= kPatience) {
-    resting_ = kRestFrames;
-    have_previous_ = false;
+    resting_ = std::max(resting_, kRestFrames);
   }
-  // What it costs to go through a pair of so many events is spread over as many frames.
-  if (gathered_events > settings_.most_events) {
-    resting_ = std::max(resting_, static_cast<int>(gathered_events / settings_.most_events));
-    have_previous_ = false;
-  }
+  // No pair: the next frame is not needed, or will be closed otherwise than this one.
+  have_previous_ = resting_ == 0 && in_force_.thresholds == before.thresholds &&
+                   in_force_.event_delay_ns == before.event_delay_ns;
   return outcome;
 }
 
@@ -202,12 +192,14 @@ void OnlineCalibration::loadLogLatent(const Frame& frame, const CameraResponse& 
   }
 }
 
-/// All pixels, or as many rows as hold about Settings::most_events of the pair's events.
+/// All pixels, or as many rows as hold about Settings::most_events of the pair's events; then what
+/// it costs to go through all of them is spread over as many frames.
 OnlineCalibration::Band OnlineCalibration::nextBand(std::uint64_t events) {
   const auto width = static_cast<std::size_t>(size_.width);
   if (events <= settings_.most_events) {
     return {0, size_.pixelCount()};
   }
+  resting_ = static_cast<int>(events / settings_.most_events);
   const auto height = static_cast<std::uint64_t>(size_.height);
   const int rows = std::max(1, static_cast<int>(height * settings_.most_events / events));
   if (next_row_ + rows > size_.height) {

@@ -346,10 +346,13 @@ LiveParameters::Values DeblurNode::reconfigure(const LiveParameters::Values& wan
     }
     const std::uint32_t latent_queue = latentQueueFor(parameters_.deblur.latent);
     if (latent_queue > latent_queue_) {
-      ROS_WARN_STREAM(name_ << ": the queue of " << latent_publisher_.getTopic() << " holds "
-                            << latent_queue_ << " images, expected " << latent_queue
-                            << " for this many latent images: slow subscribers may lose some;"
-                               " set latent_images before the node starts");
+      warnThrottled("latent queue",
+                    "the queue of " + latent_publisher_.getTopic() + " holds " +
+                        std::to_string(latent_queue_) + " images, expected " +
+                        std::to_string(latent_queue) +
+                        " for this many latent images: slow subscribers may lose some; set"
+                        " latent_images before the node starts",
+                    callback_start_ns_);
     }
   });
   subscribersChanged();  // those of latent images count only while there are any

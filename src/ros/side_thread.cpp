@@ -4,7 +4,7 @@ namespace fast_edi {
 namespace {
 
 /// How long stop() may have to wait for an idle thread.
-const ros::WallDuration kPatience(0.05);
+const ros::WallDuration kLongestWait(0.05);
 
 }  // namespace
 
@@ -17,7 +17,7 @@ ros::NodeHandle SideThread::handle(const ros::NodeHandle& nh) {
 void SideThread::start() {
   thread_ = std::thread([this] {
     while (!stopped_) {
-      queue_.callOne(kPatience);
+      queue_.callOne(kLongestWait);
     }
   });
 }

@@ -56,8 +56,8 @@ TagDetectorNode::TagDetectorNode(const ros::NodeHandle& nh, const ros::NodeHandl
 
 TagDetectorNode::~TagDetectorNode() {
   side_thread_.stop();
+  report_timer_.stop();  // which looks at the inputs
   inputs_.reset();
-  report_timer_.stop();
   detections_publisher_.shutdown();
   annotated_publisher_.shutdown();
 }

@@ -31,9 +31,9 @@
 /// An offset between the clocks is no low-pass: it belongs into `time_offset`.
 ///
 /// Each pair is used until kEagerFits have told something, then one of kRestFrames; the same while
-/// kPatience pairs on end have told nothing. A pair of more
-/// than Settings::most_events tells more than enough: a band of rows with about that many is used,
-/// the next pair takes the next band, and comes later by a frame for each most_events.
+/// kPatience pairs on end have told nothing. A pair of more than Settings::most_events tells more
+/// than enough: a band of rows with about that many is used, the next pair takes the next band, and
+/// comes later by a frame for each most_events.
 ///
 /// Recordings without events between exposures exist (a driver dropped them); there the fit would
 /// be wrong and is not made.

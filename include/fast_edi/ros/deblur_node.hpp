@@ -127,6 +127,8 @@ class DeblurNode {
   LoadedParameters parameters_;         ///< in force: the same with the driver's biases
   dynamic_reconfigure::ConfigConstPtr driver_biases_;  ///< the last that could be used
 
+  SideThread side_thread_;  ///< outlives the publishers and the server that use its queue
+
   std::mutex mutex_;
   std::optional<MessageFrameSink> sink_;
   std::unique_ptr<Deblurrer> deblurrer_;  ///< null when idle for good
@@ -147,7 +149,6 @@ class DeblurNode {
   ros::SteadyTimer report_timer_;
   std::unique_ptr<Inputs> inputs_;                         ///< null while nobody listens
   std::unique_ptr<ReconfigureServer> reconfigure_server_;  ///< none when idle for good
-  SideThread side_thread_;
 };
 
 }  // namespace fast_edi

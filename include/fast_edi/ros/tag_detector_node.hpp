@@ -70,6 +70,7 @@ class TagDetectorNode {
   std::string image_topic_;
   std::string configuration_error_;
   TagDetectorParameters parameters_;
+  SideThread side_thread_;  ///< for subscribers that come and go; outlives the publishers
 
   std::mutex mutex_;
   std::optional<TagDetector> detector_;  ///< empty when idle for good
@@ -86,7 +87,6 @@ class TagDetectorNode {
   std::optional<diagnostic_updater::Updater> updater_;
   ros::SteadyTimer report_timer_;
   std::unique_ptr<Inputs> inputs_;  ///< null while nobody listens
-  SideThread side_thread_;          ///< for subscribers that come and go
 };
 
 }  // namespace fast_edi
