@@ -9,7 +9,6 @@ namespace {
 /// simulated sequences; 3 to 5 differ by less than 0.1 dB.
 constexpr float kRangeInNoise = 3.0F;
 /// 16-bit DN for one 8-bit DN: 65535 / 255.
-constexpr float kDn16PerDn8 = 257.0F;
 /// Truncation rounds to nearest after this is added to a number that is not negative. A weighted
 /// mean of levels lies within their range, so nothing needs to be clamped.
 constexpr float kHalf = 0.5F;
@@ -33,7 +32,7 @@ void storeRow(const float* in, std::size_t count, std::size_t channels, std::uin
 
 EdgePreservingFilter::Settings filterSettings(PixelFormat format,
                                               const FrameNoiseFilter::Settings& settings) {
-  const float dn = format == PixelFormat::kMono16 ? kDn16PerDn8 : 1.0F;
+  const float dn = format == PixelFormat::kMono16 ? static_cast<float>(kDn16PerDn8) : 1.0F;
   return {kRangeInNoise * settings.noise_dn * dn, settings.spatial_sigma_px,
           format == PixelFormat::kBayer8 ? 2 : 1};
 }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <limits>
 
 #include <Eigen/Cholesky>
@@ -19,7 +18,6 @@ constexpr int kLowestEvidence_dn = 16;
 constexpr int kHighestEvidence_dn = 239;
 constexpr std::size_t kLevels = 256;
 /// 16-bit DN for one 8-bit DN: 65535 / 255.
-constexpr int kDn16PerDn8 = 257;
 
 /// Changes below this many events drown in the quantisation of events.
 constexpr float kLeastChange = 3.0F;
@@ -81,23 +79,6 @@ bool isHole(const PixelEventLists& lists, const ExposureInterval& first,
   const double rate = inside / static_cast<double>(first.length() + second.length());
   return static_cast<double>(eventsIn(lists, between)) <
          kLeastRateBetween * rate * static_cast<double>(between.length());
-}
-
-/// 8-bit level of a pixel; of colours, the mean.
-std::size_t levelOf(const std::uint8_t* pixel, PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kMono16: {
-      std::uint16_t level = 0;
-      std::memcpy(&level, pixel, sizeof(level));
-      return static_cast<std::size_t>(level / kDn16PerDn8);
-    }
-    case PixelFormat::kColor8:
-      return static_cast<std::size_t>((pixel[0] + pixel[1] + pixel[2]) / 3);
-    case PixelFormat::kMono8:
-    case PixelFormat::kBayer8:
-      break;
-  }
-  return pixel[0];
 }
 
 double limited(double value, double lowest, double highest) {
@@ -187,7 +168,7 @@ void OnlineCalibration::loadLogLatent(const Frame& frame, const CameraResponse& 
   for (int y = 0; y < size_.height; ++y) {
     const std::uint8_t* pixel = frame.image.row(y);
     for (int x = 0; x < size_.width; ++x, ++i, pixel += bytes) {
-      log_latent_[i] = log_exposure[levelOf(pixel, frame.image.format)] + fastLog(frame.gain[i]);
+      log_latent_[i] = log_exposure[level8(pixel, frame.image.format)] + fastLog(frame.gain[i]);
     }
   }
 }

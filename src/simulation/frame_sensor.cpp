@@ -4,16 +4,17 @@
 
 #include <boost/random/normal_distribution.hpp>
 
+#include "fast_edi/core/image.hpp"
+
 namespace fast_edi {
 namespace {
 
 constexpr double kMax8 = 255.0;
-constexpr double kDn16PerDn = 257.0;
 
 cv::Mat quantize(const cv::Mat1f& dn, int bits) {
   cv::Mat frame;
   if (bits == 16) {
-    dn.convertTo(frame, CV_16U, kDn16PerDn);
+    dn.convertTo(frame, CV_16U, kDn16PerDn8);
   } else {
     dn.convertTo(frame, CV_8U);
   }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -17,6 +16,7 @@
 #include <sensor_msgs/Image.h>
 #include <boost/program_options.hpp>
 
+#include "command_line.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/ros/bag_deserialise.hpp"
 #include "fast_edi/ros/bag_error.hpp"
@@ -31,11 +31,10 @@
 namespace {
 
 namespace po = boost::program_options;
+namespace tools = fast_edi::tools;
 using fast_edi::BagPipeline;
-
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kInputIncomplete = 2;
+using tools::kDone;
+using tools::kInputIncomplete;
 
 struct Arguments {
   std::string bag;
@@ -108,12 +107,7 @@ po::options_description describeOptions(Arguments& arguments) {
 bool parseArguments(int argc, char** argv, Arguments& arguments) {
   const po::options_description visible = describeOptions(arguments);
   std::vector<std::string> words;
-  po::options_description all;
-  all.add(visible).add_options()("argument", po::value(&words));
-  po::positional_options_description positional;
-  positional.add("argument", -1);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  po::variables_map values = tools::readCommandLine(argc, argv, visible, words);
   if (argc == 1 || values.count("help") > 0) {
     std::cout << "Usage: count_tags BAG [options] [parameter:=value ...]\n\n"
                  "Counts AprilTags in the frames of a recording: blurry, by plain EDI (filter:\n"
@@ -125,28 +119,11 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
     return false;
   }
   po::notify(values);
-  for (const std::string& word : words) {
-    if (word.find(":=") != std::string::npos) {
-      arguments.overrides.push_back(word);
-    } else if (arguments.bag.empty()) {
-      arguments.bag = word;
-    } else {
-      throw po::error("one recording at a time, got " + arguments.bag + " and " + word);
-    }
-  }
+  tools::sortWords(words, arguments.bag, arguments.overrides);
   if (arguments.bag.empty()) {
     throw po::error("expected a BAG");
   }
   return true;
-}
-
-fast_edi::LoadedParameters loadParameters(const Arguments& arguments) {
-  if (!arguments.config.empty()) {
-    return fast_edi::parametersFromFile(arguments.config, arguments.overrides);
-  }
-  YAML::Node root(YAML::NodeType::Map);
-  fast_edi::applyOverrides(root, arguments.overrides);
-  return fast_edi::parametersFromYaml(root, "");
 }
 
 void printRow(const char* name, const Count& count, const Count& truth) {
@@ -232,10 +209,9 @@ class TagCounter {
 };
 
 int run(const Arguments& arguments) {
-  const fast_edi::LoadedParameters parameters = loadParameters(arguments);
-  for (const std::string& warning : parameters.warnings) {
-    std::cerr << "warning: " << warning << "\n";
-  }
+  const fast_edi::LoadedParameters parameters =
+      tools::loadParameters(arguments.config, arguments.overrides);
+  tools::printWarnings(parameters);
   TagCounter counter(arguments, parameters);
   fast_edi::BagReader reader(arguments.bag);
   const std::string faults = fast_edi::checkTopics(arguments.topics, reader.connections());
@@ -258,26 +234,16 @@ int run(const Arguments& arguments) {
               static_cast<unsigned long long>(counter.counters().frames_deblurred),
               static_cast<unsigned long long>(counter.counters().frames_in));
   counter.print();
-  for (const fast_edi::BagDamage& damage : reader.damage()) {
-    std::cerr << "warning: " << arguments.bag << ", byte " << damage.offset << ": " << damage.what
-              << "\n";
-  }
-  if (malformed > 0) {
-    std::cerr << "warning: " << malformed << " messages contradict themselves and were not used\n";
-  }
+  tools::printDamage(arguments.bag, reader);
+  tools::printMalformed(malformed);
   return reader.damage().empty() && malformed == 0 ? kDone : kInputIncomplete;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return tools::runTool("count_tags", [argc, argv] {
     Arguments arguments;
     return parseArguments(argc, argv, arguments) ? run(arguments) : kDone;
-  } catch (const po::error& error) {
-    std::cerr << "count_tags: " << error.what() << " (see --help)\n";
-  } catch (const std::exception& error) {
-    std::cerr << "count_tags: " << error.what() << "\n";
-  }
-  return kFailed;
+  });
 }

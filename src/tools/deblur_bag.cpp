@@ -2,15 +2,14 @@
 /// `deblur_bag`: a recording in, the same recording with deblurred frames out, or a film of it.
 
 #include <csignal>
-#include <exception>
 #include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <yaml-cpp/yaml.h>
 #include <boost/program_options.hpp>
 
+#include "command_line.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/ros/bag_deblurrer.hpp"
 #include "fast_edi/ros/bag_error.hpp"
@@ -23,10 +22,10 @@
 namespace {
 
 namespace po = boost::program_options;
+namespace tools = fast_edi::tools;
+using tools::kDone;
+using tools::kInputIncomplete;
 
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kInputIncomplete = 2;
 constexpr int kInterrupted = 128;  ///< plus the number of the signal, as shells have it
 /// More notes than this help nobody.
 constexpr std::size_t kMaxDamageNotes = 10;
@@ -113,12 +112,7 @@ void printHelp(const po::options_description& options) {
 /// \return false when help was asked for and given
 bool parseArguments(int argc, char** argv, Arguments& arguments) {
   const po::options_description visible = describeOptions(arguments);
-  po::options_description all;
-  all.add(visible).add_options()("override", po::value(&arguments.overrides));
-  po::positional_options_description positional;
-  positional.add("override", -1);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  po::variables_map values = tools::readCommandLine(argc, argv, visible, arguments.overrides);
   if (argc == 1 || values.count("help") > 0) {
     printHelp(visible);
     return false;
@@ -136,15 +130,6 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
                     std::to_string(fast_edi::kMaxLatentRate_hz));
   }
   return true;
-}
-
-fast_edi::LoadedParameters loadParameters(const Arguments& arguments) {
-  if (!arguments.config.empty()) {
-    return fast_edi::parametersFromFile(arguments.config, arguments.overrides);
-  }
-  YAML::Node root(YAML::NodeType::Map);
-  fast_edi::applyOverrides(root, arguments.overrides);
-  return fast_edi::parametersFromYaml(root, ".");
 }
 
 void printInterruption(const fast_edi::BagReader& reader, const fast_edi::BagDeblurReport& report) {
@@ -186,13 +171,12 @@ void printFilm(const fast_edi::FilmReport& film, const std::string& path) {
 }
 
 int run(const Arguments& arguments) {
-  fast_edi::LoadedParameters parameters = loadParameters(arguments);
+  fast_edi::LoadedParameters parameters =
+      tools::loadParameters(arguments.config, arguments.overrides);
   if (!arguments.video.empty()) {
     parameters.deblur.latent.rate_hz = arguments.film_rate_hz;
   }
-  for (const std::string& warning : parameters.warnings) {
-    std::cerr << "warning: " << warning << "\n";
-  }
+  tools::printWarnings(parameters);
   fast_edi::BagReader reader(arguments.input);
   const std::string faults = fast_edi::checkTopics(arguments.topics, reader.connections());
   if (!faults.empty()) {
@@ -240,10 +224,7 @@ int run(const Arguments& arguments) {
   }
   std::cout << std::flush;
   printDamage(reader, report, arguments.input);
-  if (report.malformed_messages > 0) {
-    std::cerr << "warning: " << report.malformed_messages
-              << " messages contradict themselves and were not used\n";
-  }
+  tools::printMalformed(report.malformed_messages);
   printInterruption(reader, report);
   if (report.interrupted) {
     return kInterrupted + interrupting_signal;
@@ -255,13 +236,8 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   handleSignals();
-  try {
+  return tools::runTool("deblur_bag", [argc, argv] {
     Arguments arguments;
     return parseArguments(argc, argv, arguments) ? run(arguments) : kDone;
-  } catch (const po::error& error) {
-    std::cerr << "deblur_bag: " << error.what() << " (see --help)\n";
-  } catch (const std::exception& error) {
-    std::cerr << "deblur_bag: " << error.what() << "\n";
-  }
-  return kFailed;
+  });
 }

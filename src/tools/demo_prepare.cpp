@@ -3,7 +3,6 @@
 /// how the launch file is to be called.
 
 #include <cmath>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -14,6 +13,7 @@
 #include <yaml-cpp/yaml.h>
 #include <boost/program_options.hpp>
 
+#include "command_line.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/ros/bag_error.hpp"
 #include "fast_edi/ros/bag_reader.hpp"
@@ -23,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 namespace po = boost::program_options;
+namespace tools = fast_edi::tools;
 
 struct Arguments {
   std::string bag;
@@ -45,12 +46,7 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
       "image", po::value(&topics.image)->default_value(topics.image))(
       "exposure", po::value(&topics.exposure)->default_value(topics.exposure))(
       "camera-info", po::value(&topics.camera_info));
-  po::options_description all;
-  all.add(visible).add_options()("override", po::value(&arguments.overrides));
-  po::positional_options_description positional;
-  positional.add("override", -1);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  po::variables_map values = tools::readCommandLine(argc, argv, visible, arguments.overrides);
   if (values.count("help") > 0) {
     std::cout
         << "Usage: demo_prepare --in BAG --config YAML --parameters-out YAML [options] "
@@ -87,12 +83,10 @@ std::string outputNamespace(const fast_edi::TopicNames& topics) {
   return name.empty() ? "/" : name.substr(name.front() == '/' ? 1 : 0);
 }
 
-void run(const Arguments& arguments) {
+int run(const Arguments& arguments) {
   const fast_edi::LoadedParameters parameters =
       fast_edi::parametersFromFile(arguments.config, arguments.overrides);
-  for (const std::string& warning : parameters.warnings) {
-    std::cerr << "warning: " << warning << "\n";
-  }
+  tools::printWarnings(parameters);
   const fast_edi::BagReader reader(arguments.bag);
   if (!reader.damage().empty()) {
     throw fast_edi::BagError(arguments.bag + " is cut short or damaged (at byte " +
@@ -114,19 +108,14 @@ void run(const Arguments& arguments) {
             << "camera_info:=" << topics.cameraInfo() << "\n";
   std::cerr << arguments.bag << ": " << reader.messageCount() << " messages in "
             << reader.duration() << " s\n";
+  return tools::kDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return tools::runTool("demo_prepare", [argc, argv] {
     Arguments arguments;
-    if (parseArguments(argc, argv, arguments)) {
-      run(arguments);
-    }
-    return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "demo_prepare: " << error.what() << "\n";
-    return 1;
-  }
+    return parseArguments(argc, argv, arguments) ? run(arguments) : tools::kDone;
+  });
 }

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
-#include <exception>
 #include <iomanip>
 #include <iostream>
 #include <iterator>
@@ -23,6 +22,7 @@
 #include <boost/program_options.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "command_line.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/evaluation/comparison_sheet.hpp"
 #include "fast_edi/evaluation/image_metrics.hpp"
@@ -458,12 +458,7 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
       "exposure", po::value(&topics.exposure)->default_value(topics.exposure))(
       "camera-info", po::value(&topics.camera_info))(
       "truth", po::value(&arguments.truth)->default_value(arguments.truth));
-  po::options_description all;
-  all.add(visible).add_options()("override", po::value(&arguments.overrides));
-  po::positional_options_description positional;
-  positional.add("override", -1);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  po::variables_map values = tools::readCommandLine(argc, argv, visible, arguments.overrides);
   if (values.count("help") > 0) {
     std::cout << "Usage: demo_report --in BAG --live BAG --config YAML --picture PNG [options] "
                  "[parameter:=value ...]\n\n"
@@ -491,24 +486,22 @@ int run(const Arguments& arguments) {
   report.print(std::cout);
   if (!report.hasOutput()) {
     std::cerr << "demo_report: no deblurred frame was published\n";
-    return 1;
+    return tools::kFailed;
   }
   if (!cv::imwrite(arguments.picture, report.draw())) {
     std::cerr << "demo_report: cannot write " << arguments.picture << "\n";
-    return 1;
+    return tools::kFailed;
   }
-  return report.lostFrames() ? 1 : 0;
+  return report.lostFrames() ? tools::kFailed : tools::kDone;
 }
 
 }  // namespace
 }  // namespace fast_edi
 
 int main(int argc, char** argv) {
-  try {
+  return fast_edi::tools::runTool("demo_report", [argc, argv] {
     fast_edi::Arguments arguments;
-    return fast_edi::parseArguments(argc, argv, arguments) ? fast_edi::run(arguments) : 0;
-  } catch (const std::exception& error) {
-    std::cerr << "demo_report: " << error.what() << "\n";
-    return 1;
-  }
+    return fast_edi::parseArguments(argc, argv, arguments) ? fast_edi::run(arguments)
+                                                           : fast_edi::tools::kDone;
+  });
 }

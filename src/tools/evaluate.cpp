@@ -2,7 +2,6 @@
 /// `evaluate`: blurry input, plain EDI, the paper's counter EDI, EDI with searched contrast and
 /// this package's own output, measured on a recording or on the fixed set of simulated sequences.
 
-#include <exception>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -22,10 +21,12 @@
 #include <boost/program_options.hpp>
 #include <opencv2/core/utility.hpp>
 
+#include "command_line.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/evaluation/evaluation.hpp"
 #include "fast_edi/evaluation/report.hpp"
 #include "fast_edi/evaluation/sequences.hpp"
+#include "fast_edi/ros/bag_deserialise.hpp"
 #include "fast_edi/ros/bag_error.hpp"
 #include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/event_array.hpp"
@@ -36,10 +37,9 @@
 namespace {
 
 namespace po = boost::program_options;
-
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kInputIncomplete = 2;
+namespace tools = fast_edi::tools;
+using tools::kDone;
+using tools::kInputIncomplete;
 
 struct Arguments {
   std::string bag;
@@ -50,7 +50,6 @@ struct Arguments {
   std::string truth_topic;
   fast_edi::ScorerOptions scorer;
   fast_edi::ContrastSearchOptions search;
-  std::vector<std::string> positional;
   std::vector<std::string> overrides;
   bool sequences = false;
   int frames = fast_edi::kSequenceFrames;
@@ -136,35 +135,19 @@ void printHelp(const po::options_description& options) {
       << options << "\nExit code: 0 done; 1 failed; 2 the recording was cut short or damaged.\n";
 }
 
-bool isOverride(const std::string& argument) {
-  return argument.find(":=") != std::string::npos;
-}
-
 /// \return false when help was asked for and given
 bool parseArguments(int argc, char** argv, Arguments& arguments) {
   arguments.output = "evaluation";
   arguments.truth_topic = "/dvs/ground_truth/image_raw";
   const po::options_description visible = describeOptions(arguments);
-  po::options_description all;
-  all.add(visible).add_options()("argument", po::value(&arguments.positional));
-  po::positional_options_description positional;
-  positional.add("argument", -1);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  std::vector<std::string> words;
+  po::variables_map values = tools::readCommandLine(argc, argv, visible, words);
   if (argc == 1 || values.count("help") > 0) {
     printHelp(visible);
     return false;
   }
   po::notify(values);
-  for (const std::string& argument : arguments.positional) {
-    if (isOverride(argument)) {
-      arguments.overrides.push_back(argument);
-    } else if (arguments.bag.empty()) {
-      arguments.bag = argument;
-    } else {
-      throw po::error("one recording at a time, got " + arguments.bag + " and " + argument);
-    }
-  }
+  tools::sortWords(words, arguments.bag, arguments.overrides);
   if (arguments.sequences != arguments.bag.empty()) {
     throw po::error("expected either a BAG or --sequences");
   }
@@ -205,32 +188,6 @@ fast_edi::LoadedParameters loadParameters(const Arguments& arguments) {
       root, std::filesystem::path(arguments.config).parent_path().string());
 }
 
-/// \throws ros::serialization::StreamOverrunException
-template <typename Message>
-void deserialize(const fast_edi::BagMessage& raw, Message& message) {
-  ros::serialization::IStream stream(const_cast<std::uint8_t*>(raw.data), raw.size);
-  ros::serialization::deserialize(stream, message);
-}
-
-/// As above, but refuses a stated length of pixels beyond the message before memory is taken for
-/// it. \throws ros::serialization::StreamOverrunException
-void deserialize(const fast_edi::BagMessage& raw, sensor_msgs::Image& image) {
-  ros::serialization::IStream stream(const_cast<std::uint8_t*>(raw.data), raw.size);
-  ros::serialization::IStream ahead = stream;
-  ahead.next(image.header);
-  ahead.next(image.height);
-  ahead.next(image.width);
-  ahead.next(image.encoding);
-  ahead.next(image.is_bigendian);
-  ahead.next(image.step);
-  std::uint32_t bytes = 0;
-  ahead.next(bytes);
-  if (bytes > ahead.getLength()) {
-    ros::serialization::throwStreamOverrun();
-  }
-  ros::serialization::deserialize(stream, image);
-}
-
 /// What the evaluation works on: one channel of 8 bits. Empty when the encoding is not deblurred.
 cv::Mat toMono8(const sensor_msgs::Image& message) {
   namespace encodings = sensor_msgs::image_encodings;
@@ -244,9 +201,8 @@ cv::Mat toMono8(const sensor_msgs::Image& message) {
     case fast_edi::PixelFormat::kBayer8:
       return raw->image;
     case fast_edi::PixelFormat::kMono16: {
-      constexpr double kTo8Bits = 1.0 / 257.0;
       cv::Mat image;
-      raw->image.convertTo(image, CV_8U, kTo8Bits);
+      raw->image.convertTo(image, CV_8U, 1.0 / fast_edi::kDn16PerDn8);
       return image;
     }
     case fast_edi::PixelFormat::kColor8:
@@ -266,9 +222,8 @@ class TruthFrames {
         continue;
       }
       try {
-        sensor_msgs::Image image;
-        deserialize(message, image);
-        frames_[static_cast<std::int64_t>(image.header.stamp.toNSec())] = toMono8(image);
+        const auto image = fast_edi::deserialise<sensor_msgs::Image>(message);
+        frames_[static_cast<std::int64_t>(image->header.stamp.toNSec())] = toMono8(*image);
       } catch (const ros::serialization::StreamOverrunException&) {
         ++malformed_;
       }
@@ -298,21 +253,18 @@ bool feed(const fast_edi::BagMessage& message, const fast_edi::TopicNames& topic
   comparison.advance(now_ns);
   try {
     if (topic == topics.events) {
-      fast_edi::EventArrayView array;
-      deserialize(message, array);
-      comparison.addEvents(array.events(), fast_edi::sensorSize(array), array.header.seq, now_ns);
+      const auto array = fast_edi::deserialise<fast_edi::EventArrayView>(message);
+      comparison.addEvents(array->events(), fast_edi::sensorSize(*array), array->header.seq,
+                           now_ns);
     } else if (topic == topics.image) {
-      sensor_msgs::Image image;
-      deserialize(message, image);
-      if (fast_edi::readImage(image).verdict == fast_edi::ImageVerdict::kMalformed) {
+      const auto image = fast_edi::deserialise<sensor_msgs::Image>(message);
+      if (fast_edi::readImage(*image).verdict == fast_edi::ImageVerdict::kMalformed) {
         return false;
       }
-      comparison.addFrame(static_cast<std::int64_t>(image.header.stamp.toNSec()), toMono8(image),
+      comparison.addFrame(static_cast<std::int64_t>(image->header.stamp.toNSec()), toMono8(*image),
                           now_ns);
     } else if (topic == topics.exposure) {
-      std_msgs::Int32 exposure;
-      deserialize(message, exposure);
-      comparison.addExposure(exposure.data, now_ns);
+      comparison.addExposure(fast_edi::deserialise<std_msgs::Int32>(message)->data, now_ns);
     }
   } catch (const ros::serialization::StreamOverrunException&) {
     return false;
@@ -400,13 +352,8 @@ int evaluateBag(const Arguments& arguments, const fast_edi::DeblurParameters& pa
                                      {"Evaluation of " + evaluation.name, arguments.command, notes},
                                      groups)
             << "\n";
-  for (const fast_edi::BagDamage& damage : reader.damage()) {
-    std::cerr << "warning: " << arguments.bag << ", byte " << damage.offset << ": " << damage.what
-              << "\n";
-  }
-  if (malformed > 0) {
-    std::cerr << "warning: " << malformed << " messages contradict themselves and were not used\n";
-  }
+  tools::printDamage(arguments.bag, reader);
+  tools::printMalformed(malformed);
   return reader.damage().empty() && malformed == 0 ? kDone : kInputIncomplete;
 }
 
@@ -453,9 +400,7 @@ int evaluateSequences(const Arguments& arguments, const fast_edi::DeblurParamete
 
 int run(const Arguments& arguments) {
   const fast_edi::LoadedParameters parameters = loadParameters(arguments);
-  for (const std::string& warning : parameters.warnings) {
-    std::cerr << "warning: " << warning << "\n";
-  }
+  tools::printWarnings(parameters);
   // Run times are those of one thread; results do not depend on how many cores there are.
   cv::setNumThreads(1);
   return arguments.sequences ? evaluateSequences(arguments, parameters.deblur)
@@ -465,13 +410,8 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return tools::runTool("evaluate", [argc, argv] {
     Arguments arguments;
     return parseArguments(argc, argv, arguments) ? run(arguments) : kDone;
-  } catch (const po::error& error) {
-    std::cerr << "evaluate: " << error.what() << " (see --help)\n";
-  } catch (const std::exception& error) {
-    std::cerr << "evaluate: " << error.what() << "\n";
-  }
-  return kFailed;
+  });
 }

@@ -2,7 +2,6 @@
 /// `trajectory_error`: absolute trajectory error and drift of recorded odometry against recorded
 /// true poses.
 
-#include <exception>
 #include <functional>
 #include <iomanip>
 #include <iostream>
@@ -17,6 +16,7 @@
 #include <boost/program_options.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "command_line.hpp"
 #include "fast_edi/evaluation/trajectory_error.hpp"
 #include "fast_edi/evaluation/trajectory_plot.hpp"
 #include "fast_edi/ros/bag_deserialise.hpp"
@@ -26,12 +26,11 @@
 namespace {
 
 namespace po = boost::program_options;
+namespace tools = fast_edi::tools;
 using fast_edi::BagMessage;
 using fast_edi::TimedPosition;
-
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kInputIncomplete = 2;
+using tools::kDone;
+using tools::kInputIncomplete;
 
 struct Arguments {
   std::string bag;
@@ -158,10 +157,8 @@ std::vector<TimedPosition> readPositions(const std::string& path, const std::str
       incomplete = true;
     }
   }
-  for (const fast_edi::BagDamage& damage : reader.damage()) {
-    std::cerr << "warning: " << path << ", byte " << damage.offset << ": " << damage.what << "\n";
-    incomplete = true;
-  }
+  tools::printDamage(path, reader);
+  incomplete = incomplete || !reader.damage().empty();
   if (positions.empty()) {
     throw fast_edi::BagError(path + ": no poses on " + topic);
   }
@@ -206,13 +203,8 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return tools::runTool("trajectory_error", [argc, argv] {
     Arguments arguments;
     return parseArguments(argc, argv, arguments) ? run(arguments) : kDone;
-  } catch (const po::error& error) {
-    std::cerr << "trajectory_error: " << error.what() << " (see --help)\n";
-  } catch (const std::exception& error) {
-    std::cerr << "trajectory_error: " << error.what() << "\n";
-  }
-  return kFailed;
+  });
 }

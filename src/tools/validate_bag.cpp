@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -17,6 +16,7 @@
 #include <boost/program_options.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "command_line.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/evaluation/plot.hpp"
 #include "fast_edi/ros/bag_deserialise.hpp"
@@ -33,9 +33,9 @@ namespace {
 
 namespace fs = std::filesystem;
 namespace po = boost::program_options;
+namespace tools = fast_edi::tools;
 
 constexpr int kSound = 0;
-constexpr int kFailed = 1;
 constexpr int kFindings = 2;
 
 struct Arguments {
@@ -62,12 +62,8 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
                       "frames")(
       "exposure", po::value(&topics.exposure)->default_value(topics.exposure)->value_name("TOPIC"),
       "exposure lengths [us]; may be missing");
-  po::options_description all;
-  all.add(visible).add_options()("word", po::value<std::vector<std::string>>());
-  po::positional_options_description positional;
-  positional.add("word", -1);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
+  std::vector<std::string> words;
+  po::variables_map values = tools::readCommandLine(argc, argv, visible, words);
   if (argc == 1 || values.count("help") > 0) {
     std::cout
         << "Usage: validate_bag BAG [--config cfg/davis346.yaml] [options] [parameter:=value "
@@ -79,19 +75,9 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
     return false;
   }
   po::notify(values);
-  if (values.count("word") > 0) {
-    for (const std::string& word : values["word"].as<std::vector<std::string>>()) {
-      if (word.find(":=") != std::string::npos) {
-        arguments.overrides.push_back(word);
-      } else if (arguments.bag.empty()) {
-        arguments.bag = word;
-      } else {
-        throw po::error("\"" + word + "\": expected one recording and parameter:=value");
-      }
-    }
-  }
+  tools::sortWords(words, arguments.bag, arguments.overrides);
   if (arguments.bag.empty()) {
-    throw po::error("no recording is named");
+    throw po::error("expected a BAG");
   }
   return true;
 }
@@ -112,9 +98,7 @@ fast_edi::AssumedParameters assumedParameters(const Arguments& arguments) {
     }
     loaded = fast_edi::parametersFromYaml(root, ".");
   }
-  for (const std::string& warning : loaded.warnings) {
-    std::cerr << "warning: " << warning << "\n";
-  }
+  tools::printWarnings(loaded);
   assumed.thresholds = loaded.deblur.thresholds;
   assumed.stamp_reference = loaded.deblur.stamp_reference;
   assumed.time_offset_ns = loaded.deblur.time_offset_ns;
@@ -255,13 +239,8 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return tools::runTool("validate_bag", [argc, argv] {
     Arguments arguments;
     return parseArguments(argc, argv, arguments) ? run(arguments) : kSound;
-  } catch (const po::error& error) {
-    std::cerr << "validate_bag: " << error.what() << " (see --help)\n";
-  } catch (const std::exception& error) {
-    std::cerr << "validate_bag: " << error.what() << "\n";
-  }
-  return kFailed;
+  });
 }

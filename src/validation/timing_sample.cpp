@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -13,26 +12,8 @@ namespace {
 constexpr int kLowestEvidence_dn = 12;
 constexpr int kHighestEvidence_dn = 243;
 constexpr std::size_t kLevels = 256;
-constexpr int kDn16PerDn8 = 257;
 /// Pixels of a sample, about.
 constexpr int kEnoughPixels = 25'000;
-
-/// 8-bit level of a pixel; of colours, the mean.
-std::size_t levelOf(const std::uint8_t* pixel, PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kMono16: {
-      std::uint16_t level = 0;
-      std::memcpy(&level, pixel, sizeof(level));
-      return static_cast<std::size_t>(level / kDn16PerDn8);
-    }
-    case PixelFormat::kColor8:
-      return static_cast<std::size_t>((pixel[0] + pixel[1] + pixel[2]) / 3);
-    case PixelFormat::kMono8:
-    case PixelFormat::kBayer8:
-      break;
-  }
-  return pixel[0];
-}
 
 int rowStep(SensorSize size) {
   return 1 + static_cast<int>(size.pixelCount()) / kEnoughPixels;
@@ -52,7 +33,7 @@ std::vector<float> TimingSampler::logExposure(const ImageView& image) const {
   for (int y = 0; y < image.size.height; y += row_step_) {
     const std::uint8_t* pixel = image.row(y);
     for (int x = 0; x < image.size.width; ++x, pixel += bytes) {
-      result.push_back(table[levelOf(pixel, image.format)]);
+      result.push_back(table[level8(pixel, image.format)]);
     }
   }
   return result;

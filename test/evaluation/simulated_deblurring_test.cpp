@@ -9,6 +9,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "evaluation/shaken_poster.hpp"
 #include "fast_edi/core/deblurrer.hpp"
 #include "fast_edi/core/double_integral.hpp"
 #include "fast_edi/evaluation/image_metrics.hpp"
@@ -22,20 +23,10 @@
 namespace fast_edi {
 namespace {
 
-constexpr SensorSize kSize{120, 90};
+using testing::parametersFor;
+using testing::shakenPoster;
 
-SimulationSettings shakenPoster(const SensorSettings& sensor) {
-  SimulationSettings settings;
-  settings.sensor = sensor;
-  settings.sensor.size = kSize;
-  settings.scene.tags = 1;
-  settings.motion.kind = MotionKind::kShake;
-  settings.motion.focal_length_px = 110.0;
-  settings.timing.frames = 6;
-  settings.timing.exposure_us = 30'000;
-  settings.seed = 5;
-  return settings;
-}
+constexpr SensorSize kSize = testing::kPosterSize;
 
 std::vector<std::uint8_t> pixelsOf(const cv::Mat& image) {
   return {image.datastart, image.dataend};
@@ -69,14 +60,6 @@ std::vector<testing::RecordedFrame> deblurred(const SimulatedSequence& sequence,
   }
   deblurrer.finish();
   return sink.outputs;
-}
-
-DeblurParameters parametersFor(const SimulationSettings& settings) {
-  DeblurParameters parameters;
-  parameters.thresholds = settings.sensor.thresholds;
-  parameters.exposure_source = ExposureSource::kParameter;
-  parameters.exposure_time_ns = settings.timing.exposure_us * kNanosecondsPerMicrosecond;
-  return parameters;
 }
 
 double meanPsnr(const std::vector<testing::RecordedFrame>& outputs,

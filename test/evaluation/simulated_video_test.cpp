@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "evaluation/shaken_poster.hpp"
 #include "fast_edi/core/deblurrer.hpp"
 #include "fast_edi/evaluation/image_metrics.hpp"
 #include "fast_edi/simulation/davis_simulator.hpp"
@@ -18,34 +19,20 @@
 namespace fast_edi {
 namespace {
 
-constexpr SensorSize kSize{120, 90};
+using testing::shakenPoster;
+
+constexpr SensorSize kSize = testing::kPosterSize;
 /// Odd, so that one of them is the middle.
 constexpr std::size_t kImages = 11;
 constexpr double kAllowedLoss_db = 3.0;
 
 class SimulatedVideo : public ::testing::Test {
  protected:
-  static SimulationSettings settings(const SensorSettings& sensor) {
-    SimulationSettings settings;
-    settings.sensor = sensor;
-    settings.sensor.size = kSize;
-    settings.scene.tags = 1;
-    settings.motion.kind = MotionKind::kShake;
-    settings.motion.focal_length_px = 110.0;
-    settings.timing.frames = 6;
-    settings.timing.exposure_us = 30'000;
-    settings.seed = 5;
-    return settings;
-  }
-
   void film(const SimulationSettings& settings) {
     simulator_ = std::make_unique<DavisSimulator>(settings);
     sequence_ = simulateSequence(settings);
     sink_.wants_latent_images = true;
-    DeblurParameters parameters;
-    parameters.thresholds = settings.sensor.thresholds;
-    parameters.exposure_source = ExposureSource::kParameter;
-    parameters.exposure_time_ns = settings.timing.exposure_us * kNanosecondsPerMicrosecond;
+    DeblurParameters parameters = testing::parametersFor(settings);
     parameters.latent.per_exposure = kImages;
     Deblurrer deblurrer(parameters, sink_);
     deblurrer.addEvents(testing::wireView(testing::toWire(sequence_.events)), kSize, 1, 0);
@@ -82,7 +69,7 @@ class SimulatedVideo : public ::testing::Test {
 TEST_F(SimulatedVideo, IsNowhereMuchWorseThanInTheMiddleOfTheExposure) {
   for (const SensorSettings& sensor : {SensorSettings{}, SensorSettings::ideal()}) {
     sink_.latent_images.clear();
-    film(settings(sensor));
+    film(shakenPoster(sensor));
     std::vector<double> mean(kImages, 0.0);
     const auto frames = static_cast<double>(sequence_.frames.size());
     for (std::size_t i = 0; i < sequence_.frames.size(); ++i) {
@@ -100,7 +87,7 @@ TEST_F(SimulatedVideo, IsNowhereMuchWorseThanInTheMiddleOfTheExposure) {
 }
 
 TEST_F(SimulatedVideo, BeatsTheBlurryFrameAtEveryInstant) {
-  film(settings(SensorSettings{}));
+  film(shakenPoster(SensorSettings{}));
   for (std::size_t i = 0; i < sequence_.frames.size(); ++i) {
     for (const auto& image : within(i)) {
       const double blurry = psnr(sequence_.frames[i].blurry, simulator_->latentAt(image.stamp_ns));
@@ -110,7 +97,7 @@ TEST_F(SimulatedVideo, BeatsTheBlurryFrameAtEveryInstant) {
 }
 
 TEST_F(SimulatedVideo, BridgesGapsBetterThanHoldingTheFrame) {
-  film(settings(SensorSettings{}));
+  film(shakenPoster(SensorSettings{}));
   std::size_t bridged = 0;
   for (const auto& image : sink_.latent_images) {
     const auto holds = [&image](const SimulatedFrame& frame) {

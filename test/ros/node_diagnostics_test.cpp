@@ -5,12 +5,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "ros/diagnostic_value.hpp"
+
 namespace fast_edi {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 using ::testing::HasSubstr;
+using testing::value;
 
 constexpr std::int64_t kSecond_ns = kNanosecondsPerSecond;
 
@@ -38,15 +41,6 @@ class NodeDiagnosticsTest : public ::testing::Test {
     DiagnosticStatusWrapper status;
     diagnostics_.fill(close_latency_, output_latency_, status);
     return status;
-  }
-
-  static std::string value(const DiagnosticStatusWrapper& status, const std::string& key) {
-    for (const auto& entry : status.values) {
-      if (entry.key == key) {
-        return entry.value;
-      }
-    }
-    return "no value " + key;
   }
 
   NodeDiagnostics diagnostics_{

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "fast_edi/core/types.hpp"
+#include "ros/diagnostic_value.hpp"
 
 namespace fast_edi {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 using ::testing::HasSubstr;
+using testing::value;
 
 class TagDiagnosticsTest : public ::testing::Test {
  protected:
@@ -35,15 +37,6 @@ class TagDiagnosticsTest : public ::testing::Test {
     DiagnosticStatusWrapper status;
     diagnostics_.fill(detection_time_, status);
     return status;
-  }
-
-  static std::string value(const DiagnosticStatusWrapper& status, const std::string& key) {
-    for (const auto& entry : status.values) {
-      if (entry.key == key) {
-        return entry.value;
-      }
-    }
-    return "no value " + key;
   }
 
   TagDiagnostics diagnostics_{"/dvs/deblurred/image_raw"};

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "fast_edi/core/types.hpp"
 
@@ -22,6 +23,26 @@ inline int channels(PixelFormat format) {
 }
 inline int bytesPerPixel(PixelFormat format) {
   return format == PixelFormat::kMono16 ? 2 : channels(format);
+}
+
+/// A 16-bit digital number for each 8-bit one: 65535 / 255.
+constexpr int kDn16PerDn8 = 257;
+
+/// Level of one pixel at \p pixel as an 8-bit digital number; of colours, the mean.
+inline std::size_t level8(const std::uint8_t* pixel, PixelFormat format) {
+  switch (format) {
+    case PixelFormat::kMono16: {
+      std::uint16_t level = 0;
+      std::memcpy(&level, pixel, sizeof(level));
+      return static_cast<std::size_t>(level / kDn16PerDn8);
+    }
+    case PixelFormat::kColor8:
+      return static_cast<std::size_t>((pixel[0] + pixel[1] + pixel[2]) / 3);
+    case PixelFormat::kMono8:
+    case PixelFormat::kBayer8:
+      break;
+  }
+  return pixel[0];
 }
 
 /// Read-only image memory; rows are \p step bytes apart.
