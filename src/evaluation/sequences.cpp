@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fast_edi/simulation/davis_simulator.hpp"
+#include "sequence_input.hpp"
 
 namespace fast_edi {
 namespace {
@@ -58,39 +59,6 @@ SimulationSettings settingsOf(const NamedScene& scene, int frames, std::uint64_t
   return settings;
 }
 
-/// Events as wire records in arrays, as a driver sends them.
-class WireArrays {
- public:
-  explicit WireArrays(SensorSize size) : size_(size) {}
-
-  void send(const std::vector<Event>& events, std::int64_t now_ns, MethodComparison& comparison) {
-    bytes_.clear();
-    bytes_.reserve(events.size() * kWireEventBytes);
-    for (const Event& event : events) {
-      encodeWireEvent(event, bytes_);
-    }
-    comparison.addEvents({bytes_.data(), events.size()}, size_, sequence_++, now_ns);
-  }
-
- private:
-  SensorSize size_;
-  std::vector<std::uint8_t> bytes_;
-  std::uint32_t sequence_ = 0;
-};
-
-DeblurParameters sensorParameters(const DeblurParameters& parameters,
-                                  const SimulationSettings& settings, double threshold_factor) {
-  DeblurParameters known = parameters;
-  known.thresholds = {settings.sensor.thresholds.on * threshold_factor,
-                      settings.sensor.thresholds.off * threshold_factor};
-  known.exposure_source = ExposureSource::kParameter;
-  known.exposure_time_ns = settings.timing.exposure_us * kNanosecondsPerMicrosecond;
-  known.stamp_reference = ExposureInstant::kMid;
-  known.time_offset_ns = 0;
-  known.response = CameraResponse::linear();
-  return known;
-}
-
 }  // namespace
 
 std::vector<EvaluationSequence> evaluationSequences(int frames, int seeds) {
@@ -125,14 +93,16 @@ Evaluation evaluateSequence(const EvaluationSequence& sequence, const DeblurPara
                               });
 
   DavisSimulator simulator(sequence.settings);
-  WireArrays arrays(sequence.settings.sensor.size);
+  WireArrays arrays;
   SimulatedInterval interval;
   while (simulator.next(interval)) {
     const std::int64_t stamp_ns = interval.frame.exposure.at(ExposureInstant::kMid);
     truths[stamp_ns] = interval.frame.sharp;
     // A frame leaves the camera when its exposure ends, before the last events that cover it.
     comparison.addFrame(stamp_ns, interval.frame.blurry, interval.frame.exposure.end_ns);
-    arrays.send(interval.events, interval.end_ns, comparison);
+    const WireArrays::Array array = arrays.pack(interval.events);
+    comparison.addEvents(array.events, sequence.settings.sensor.size, array.sequence,
+                         interval.end_ns);
   }
   comparison.finish();
   return recorder.evaluation();

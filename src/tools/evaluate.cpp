@@ -26,6 +26,7 @@
 #include "fast_edi/evaluation/evaluation.hpp"
 #include "fast_edi/evaluation/report.hpp"
 #include "fast_edi/evaluation/sequences.hpp"
+#include "fast_edi/evaluation/video_quality.hpp"
 #include "fast_edi/ros/bag_deserialise.hpp"
 #include "fast_edi/ros/bag_error.hpp"
 #include "fast_edi/ros/bag_reader.hpp"
@@ -55,6 +56,7 @@ struct Arguments {
   int frames = fast_edi::kSequenceFrames;
   int seeds = fast_edi::kSequenceSeeds;
   double threshold_factor = 1.0;
+  int video_images = 0;
 };
 
 std::string decimal(double value) {
@@ -119,6 +121,9 @@ po::options_description describeOptions(Arguments& arguments) {
                     ->default_value(arguments.threshold_factor)
                     ->value_name("F"),
                 "all methods get the true mean thresholds times this");
+  add_simulated("video", po::value(&arguments.video_images)->value_name("N"),
+                "instead: PSNR of the high-rate video at N instants of each exposure (odd), by the "
+                "package as its parameters are");
   options.add(recording).add(simulated);
   return options;
 }
@@ -153,6 +158,9 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   }
   if (arguments.scorer.first_frames_unscored < 0) {
     throw po::error("--skip: expected 0 or more frames");
+  }
+  if (values.count("video") > 0 && !arguments.sequences) {
+    throw po::error("--video goes with --sequences, whose truth is known at any time");
   }
   if (!(arguments.threshold_factor > 0.0)) {
     throw po::error("--threshold-factor: expected a number above 0");
@@ -398,11 +406,34 @@ int evaluateSequences(const Arguments& arguments, const fast_edi::DeblurParamete
   return kDone;
 }
 
+int evaluateVideo(const Arguments& arguments, const fast_edi::DeblurParameters& parameters) {
+  std::vector<fast_edi::VideoQuality> qualities;
+  const auto sequences = fast_edi::evaluationSequences(arguments.frames, arguments.seeds);
+  const std::uint64_t total = sequences.size() * static_cast<std::uint64_t>(arguments.frames);
+  {
+    fast_edi::ProgressBar bar("evaluating");
+    for (const fast_edi::EvaluationSequence& sequence : sequences) {
+      const std::uint64_t done_before =
+          qualities.size() * static_cast<std::uint64_t>(arguments.frames);
+      qualities.push_back(fast_edi::videoQuality(
+          sequence, parameters, arguments.video_images, arguments.scorer.first_frames_unscored,
+          [&](int frames) {
+            bar.update(done_before + static_cast<std::uint64_t>(frames), total);
+          }));
+    }
+  }
+  fast_edi::printVideoTable(std::cout, qualities);
+  return kDone;
+}
+
 int run(const Arguments& arguments) {
   const fast_edi::LoadedParameters parameters = loadParameters(arguments);
   tools::printWarnings(parameters);
   // Run times are those of one thread; results do not depend on how many cores there are.
   cv::setNumThreads(1);
+  if (arguments.video_images != 0) {
+    return evaluateVideo(arguments, parameters.deblur);
+  }
   return arguments.sequences ? evaluateSequences(arguments, parameters.deblur)
                              : evaluateBag(arguments, parameters.deblur);
 }

@@ -88,6 +88,13 @@ TEST_F(EvaluateTest, SequencesAreReportedByHalves) {
   EXPECT_THAT(result.output, HasSubstr("| page-spin/1 |"));
 }
 
+TEST_F(EvaluateTest, ShowsTheVideoOverTheExposure) {
+  const CommandResult result = evaluate("--sequences --frames 1 --seeds 1 --video 3");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("| PSNR [dB] at | 0.17 | 0.50 | 0.83 | loss | largest |"));
+  EXPECT_THAT(result.output, HasSubstr("| page-spin/1 |"));
+}
+
 TEST_F(EvaluateTest, NamesWhatIsWrong) {
   const auto fails = [this](const std::string& arguments, const std::string& message) {
     const CommandResult result = evaluate(arguments);
@@ -99,6 +106,8 @@ TEST_F(EvaluateTest, NamesWhatIsWrong) {
   fails("/nonexistent.bag" + kThresholds, "/nonexistent.bag");
   fails("/nonexistent.bag", "contrast_threshold_on");
   fails("--sequences --frames 0", "at least one frame");
+  fails("--sequences --video 4", "expected an odd number");
+  fails("a.bag --video 5" + kThresholds, "--video goes with --sequences");
   fails("--sequences --threshold-factor 0", "--threshold-factor");
   fails("--sequences --sseq-model /nonexistent", "/nonexistent/feature_range.txt");
   const std::string bag = simulate();
