@@ -2,17 +2,12 @@
 
 #include <algorithm>
 
-#include <cv_bridge/cv_bridge.h>
-#include <sensor_msgs/image_encodings.h>
-#include <boost/shared_ptr.hpp>
 #include <opencv2/core.hpp>
 
 #include "fast_edi/ros/image_pixels.hpp"
 
 namespace fast_edi {
 namespace {
-
-namespace encodings = sensor_msgs::image_encodings;
 
 /// Each event takes this much of the other two colours, so that some four events saturate.
 constexpr int kShadePerEvent_dn = 64;
@@ -61,9 +56,9 @@ sensor_msgs::ImagePtr ComparisonView::draw(const sensor_msgs::Image& input,
       darken(pixel[event.on ? 0 : 2]);
     }
   }
-  cv_bridge::CvImage picture(output.header, encodings::BGR8);
-  cv::hconcat(std::vector<cv::Mat>{blurry, drawn, latent}, picture.image);
-  return picture.toImageMsg();
+  cv::Mat picture;
+  cv::hconcat(std::vector<cv::Mat>{blurry, drawn, latent}, picture);
+  return colorMessage(output.header, picture);
 }
 
 }  // namespace fast_edi

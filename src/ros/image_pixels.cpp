@@ -1,65 +1,106 @@
 #include "fast_edi/ros/image_pixels.hpp"
 
-#include <cstddef>
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 
-#include <cv_bridge/cv_bridge.h>
+#include <sensor_msgs/fill_image.h>
 #include <sensor_msgs/image_encodings.h>
+#include <boost/make_shared.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "fast_edi/core/image.hpp"
+
+// By OpenCV alone: cv_bridge brings imgcodecs, on Debian with it GDAL and 150 more libraries, which
+// cost a nodelet manager 30 MB.
 
 namespace fast_edi {
 namespace {
 
-namespace encodings = sensor_msgs::image_encodings;
+constexpr int kAsItIs = -1;
+/// As bytes, since OpenCV wants rows of wider numbers to begin at even addresses.
+constexpr int kTwoBytes = CV_8UC2;
 
-bool isGrey(const sensor_msgs::Image& message) {
-  return message.encoding == encodings::MONO8 || message.encoding == encodings::TYPE_8UC1;
+/// How OpenCV sees the pixels of an encoding.
+struct Conversion {
+  const char* encoding;
+  int type;
+  int to_grey;  ///< code of cv::cvtColor
+  int to_color;
+};
+
+/// OpenCV names Bayer patterns by the second row's second and third pixel.
+constexpr std::array<Conversion, 9> kConversions{{
+    {"mono8", CV_8UC1, kAsItIs, cv::COLOR_GRAY2BGR},
+    {"8UC1", CV_8UC1, kAsItIs, cv::COLOR_GRAY2BGR},
+    {"mono16", kTwoBytes, kAsItIs, cv::COLOR_GRAY2BGR},
+    {"rgb8", CV_8UC3, cv::COLOR_RGB2GRAY, cv::COLOR_RGB2BGR},
+    {"bgr8", CV_8UC3, cv::COLOR_BGR2GRAY, kAsItIs},
+    {"bayer_rggb8", CV_8UC1, cv::COLOR_BayerBG2GRAY, cv::COLOR_BayerBG2BGR},
+    {"bayer_bggr8", CV_8UC1, cv::COLOR_BayerRG2GRAY, cv::COLOR_BayerRG2BGR},
+    {"bayer_gbrg8", CV_8UC1, cv::COLOR_BayerGR2GRAY, cv::COLOR_BayerGR2BGR},
+    {"bayer_grbg8", CV_8UC1, cv::COLOR_BayerGB2GRAY, cv::COLOR_BayerGB2BGR},
+}};
+
+const Conversion& conversionOf(const std::string& encoding) {
+  const auto* found =
+      std::find_if(kConversions.begin(), kConversions.end(),
+                   [&](const Conversion& known) { return encoding == known.encoding; });
+  if (found == kConversions.end()) {
+    throw std::invalid_argument("no conversion of pixels for encoding \"" + encoding + "\"");
+  }
+  return *found;
 }
 
-cv::Mat sharedGrey(const sensor_msgs::Image& message) {
+/// The message's own memory; 16 bits are scaled down to 8.
+cv::Mat eightBits(const sensor_msgs::Image& message, int type) {
   // OpenCV takes a non-const buffer; nobody writes to this one.
-  return {static_cast<int>(message.height), static_cast<int>(message.width), CV_8UC1,
-          const_cast<std::uint8_t*>(message.data.data()), message.step};
-}
-
-/// By cv_bridge, which wants rows that fill the message exactly, of whole pixels with their
-/// padding; that of the last row may be missing.
-cv::Mat converted(const sensor_msgs::Image& message, const std::string& encoding) {
-  const auto row_bytes = static_cast<std::size_t>(static_cast<int>(message.width) *
-                                                  encodings::numChannels(message.encoding) *
-                                                  encodings::bitDepth(message.encoding) / 8);
-  if (message.step == row_bytes && message.data.size() == row_bytes * message.height) {
-    return cv_bridge::toCvCopy(message, encoding)->image;
+  const cv::Mat shared(static_cast<int>(message.height), static_cast<int>(message.width), type,
+                       const_cast<std::uint8_t*>(message.data.data()), message.step);
+  if (type != kTwoBytes) {
+    return shared;
   }
-  sensor_msgs::Image packed;
-  packed.header = message.header;
-  packed.height = message.height;
-  packed.width = message.width;
-  packed.encoding = message.encoding;
-  packed.is_bigendian = message.is_bigendian;
-  packed.step = static_cast<std::uint32_t>(row_bytes);
-  for (std::uint32_t y = 0; y < message.height; ++y) {
-    const std::uint8_t* row = message.data.data() + std::size_t{message.step} * y;
-    packed.data.insert(packed.data.end(), row, row + row_bytes);
-  }
-  return cv_bridge::toCvCopy(packed, encoding)->image;
+  const cv::Mat packed = shared.clone();
+  cv::Mat scaled;
+  cv::Mat(packed.size(), CV_16UC1, packed.data).convertTo(scaled, CV_8U, 1.0 / kDn16PerDn8);
+  return scaled;
 }
 
 }  // namespace
 
 cv::Mat greyPixels(const sensor_msgs::Image& message) {
-  // Not by cv_bridge, which takes 8UC1 for a matrix without colour.
-  return isGrey(message) ? sharedGrey(message) : converted(message, encodings::MONO8);
+  const Conversion& conversion = conversionOf(message.encoding);
+  const cv::Mat pixels = eightBits(message, conversion.type);
+  if (conversion.to_grey == kAsItIs) {
+    return pixels;
+  }
+  cv::Mat grey;
+  cv::cvtColor(pixels, grey, conversion.to_grey);
+  return grey;
 }
 
 cv::Mat colorPixels(const sensor_msgs::Image& message) {
-  if (!isGrey(message)) {
-    return converted(message, encodings::BGR8);
+  const Conversion& conversion = conversionOf(message.encoding);
+  const cv::Mat pixels = eightBits(message, conversion.type);
+  if (conversion.to_color == kAsItIs) {
+    return pixels.clone();
   }
   cv::Mat color;
-  cv::cvtColor(sharedGrey(message), color, cv::COLOR_GRAY2BGR);
+  cv::cvtColor(pixels, color, conversion.to_color);
   return color;
+}
+
+sensor_msgs::ImagePtr colorMessage(const std_msgs::Header& header, const cv::Mat& color) {
+  const auto message = boost::make_shared<sensor_msgs::Image>();
+  message->header = header;
+  const auto rows = static_cast<std::uint32_t>(color.rows);
+  const auto columns = static_cast<std::uint32_t>(color.cols);
+  const cv::Mat packed = color.isContinuous() ? color : color.clone();
+  sensor_msgs::fillImage(*message, sensor_msgs::image_encodings::BGR8, rows, columns,
+                         columns * static_cast<std::uint32_t>(color.elemSize()), packed.data);
+  return message;
 }
 
 }  // namespace fast_edi

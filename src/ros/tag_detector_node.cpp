@@ -3,11 +3,9 @@
 #include <exception>
 #include <utility>
 
-#include <cv_bridge/cv_bridge.h>
 #include <image_transport/camera_common.h>
 #include <ros/console.h>
 #include <ros/transport_hints.h>
-#include <sensor_msgs/image_encodings.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include "fast_edi/ros/image_pixels.hpp"
@@ -168,9 +166,9 @@ void TagDetectorNode::publish(const sensor_msgs::Image& image,
   detections_publisher_.publish(makeTagMarkers(
       header, tags, reading.camera, {parameters_.detector.family, parameters_.tag_size_m}));
   if (annotated_publisher_.getNumSubscribers() > 0) {
-    cv_bridge::CvImage picture(header, sensor_msgs::image_encodings::BGR8, colorPixels(image));
-    drawTags(tags, picture.image);
-    annotated_publisher_.publish(picture.toImageMsg());
+    cv::Mat picture = colorPixels(image);
+    drawTags(tags, picture);
+    annotated_publisher_.publish(colorMessage(header, picture));
   }
 }
 

@@ -12,10 +12,8 @@
 #include <string>
 #include <vector>
 
-#include <cv_bridge/cv_bridge.h>
 #include <ros/serialization.h>
 #include <sensor_msgs/Image.h>
-#include <sensor_msgs/image_encodings.h>
 #include <std_msgs/Int32.h>
 #include <yaml-cpp/yaml.h>
 #include <boost/program_options.hpp>
@@ -31,6 +29,7 @@
 #include "fast_edi/ros/bag_error.hpp"
 #include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/ros/image_pixels.hpp"
 #include "fast_edi/ros/message_conversion.hpp"
 #include "fast_edi/ros/progress_bar.hpp"
 #include "fast_edi/ros/topic_names.hpp"
@@ -198,25 +197,17 @@ fast_edi::LoadedParameters loadParameters(const Arguments& arguments) {
 
 /// What the evaluation works on: one channel of 8 bits. Empty when the encoding is not deblurred.
 cv::Mat toMono8(const sensor_msgs::Image& message) {
-  namespace encodings = sensor_msgs::image_encodings;
   const fast_edi::ImageReading reading = fast_edi::readImage(message);
   if (reading.verdict != fast_edi::ImageVerdict::kSupported) {
     return {};
   }
-  const cv_bridge::CvImagePtr raw = cv_bridge::toCvCopy(message);
-  switch (reading.view.format) {
-    case fast_edi::PixelFormat::kMono8:
-    case fast_edi::PixelFormat::kBayer8:
-      return raw->image;
-    case fast_edi::PixelFormat::kMono16: {
-      cv::Mat image;
-      raw->image.convertTo(image, CV_8U, 1.0 / fast_edi::kDn16PerDn8);
-      return image;
-    }
-    case fast_edi::PixelFormat::kColor8:
-      return cv_bridge::cvtColor(raw, encodings::MONO8)->image;
+  if (reading.view.format == fast_edi::PixelFormat::kBayer8) {
+    const fast_edi::ImageView& raw = reading.view;
+    return cv::Mat(raw.size.height, raw.size.width, CV_8UC1, const_cast<std::uint8_t*>(raw.data),
+                   raw.step)
+        .clone();
   }
-  return {};
+  return fast_edi::greyPixels(message).clone();
 }
 
 /// True frames by stamp, read before everything else: a truth may be recorded after its frame.

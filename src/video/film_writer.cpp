@@ -5,19 +5,18 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <stdexcept>
 #include <system_error>
 
-#include <cv_bridge/cv_bridge.h>
-#include <sensor_msgs/image_encodings.h>
 #include <opencv2/videoio.hpp>
 
 #include "fast_edi/core/latent_instants.hpp"
+#include "fast_edi/ros/image_pixels.hpp"
 
 namespace fast_edi {
 namespace {
 
 namespace fs = std::filesystem;
-namespace encodings = sensor_msgs::image_encodings;
 
 struct Codec {
   int fourcc;
@@ -52,16 +51,6 @@ std::string writingFault(const std::string& path) {
   file.write(block.data(), static_cast<std::streamsize>(block.size()));
   file.flush();
   return file ? "" : std::strerror(errno);
-}
-
-cv::Mat pictureOf(const sensor_msgs::Image& image) {
-  // cv_bridge takes 8UC1 for a matrix without colour, which here it is not.
-  if (image.encoding == encodings::TYPE_8UC1) {
-    sensor_msgs::Image mono = image;
-    mono.encoding = encodings::MONO8;
-    return cv_bridge::toCvCopy(mono, encodings::BGR8)->image;
-  }
-  return cv_bridge::toCvCopy(image, encodings::BGR8)->image;
 }
 
 }  // namespace
@@ -124,8 +113,8 @@ std::optional<FilmWriter::Shot> FilmWriter::take(const sensor_msgs::Image& image
   Shot shot;
   shot.t_ns = static_cast<std::int64_t>(image.header.stamp.toNSec());
   try {
-    shot.picture = pictureOf(image);
-  } catch (const cv_bridge::Exception&) {  // an encoding that was only passed through
+    shot.picture = colorPixels(image);
+  } catch (const std::invalid_argument&) {  // an encoding that was only passed through
     ++report_.left_out;
     return std::nullopt;
   }

@@ -269,6 +269,7 @@ class LoadTest {
         << ", \"events_dropped\": " << after.events_dropped - before.events_dropped
         << ", \"gaps\": " << after.gaps - before.gaps << ", \"frames\": " << sent.frames
         << ", \"frames_in\": " << after.frames_in - before.frames_in
+        << ", \"frames_out\": " << after.frames_out - before.frames_out
         << ", \"deblurred\": " << after.deblurred - before.deblurred << ", \"passed\": "
         << after.frames_out - before.frames_out - (after.deblurred - before.deblurred)
         << ", \"received\": " << outputs.size()

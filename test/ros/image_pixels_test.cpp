@@ -1,7 +1,9 @@
 #include "fast_edi/ros/image_pixels.hpp"
 
 #include <cstdint>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -65,6 +67,49 @@ TEST(ImagePixelsTest, ColourIsBlueFirst) {
             cv::Vec3b(6, 5, 4));
   EXPECT_EQ(colorPixels(imageOf("mono8", {10, 200})).at<cv::Vec3b>(1, 1), cv::Vec3b(200, 200, 200));
   EXPECT_EQ(colorPixels(imageOf("8UC1", {10, 200})).at<cv::Vec3b>(0, 0), cv::Vec3b(10, 10, 10));
+}
+
+TEST(ImagePixelsTest, BayerPatternsAreTold) {
+  // Red alone: the photosites that OpenCV must take for red are those of the pattern's name.
+  const std::vector<std::pair<std::string, cv::Point>> red_sites = {{"bayer_rggb8", {0, 0}},
+                                                                    {"bayer_bggr8", {1, 1}},
+                                                                    {"bayer_gbrg8", {0, 1}},
+                                                                    {"bayer_grbg8", {1, 0}}};
+  for (const auto& [encoding, site] : red_sites) {
+    sensor_msgs::Image image;
+    image.width = 8;
+    image.height = 8;
+    image.step = 8;
+    image.encoding = encoding;
+    image.data.assign(64, 0);
+    for (int y = site.y; y < 8; y += 2) {
+      for (int x = site.x; x < 8; x += 2) {
+        image.data[static_cast<std::size_t>(y * 8 + x)] = 200;
+      }
+    }
+    EXPECT_EQ(colorPixels(image).at<cv::Vec3b>(4, 4), cv::Vec3b(0, 0, 200)) << encoding;
+    EXPECT_NEAR(greyPixels(image).at<std::uint8_t>(4, 4), 60, 1) << encoding;
+  }
+}
+
+TEST(ImagePixelsTest, RefusesWhatIsNotDeblurred) {
+  const sensor_msgs::Image image = imageOf("32FC1", std::vector<std::uint8_t>(8, 0));
+  EXPECT_THROW(greyPixels(image), std::invalid_argument);
+  EXPECT_THROW(colorPixels(image), std::invalid_argument);
+}
+
+TEST(ImagePixelsTest, MessagesHoldPackedRows) {
+  std_msgs::Header header;
+  header.frame_id = "camera";
+  const cv::Mat wide(3, 5, CV_8UC3, cv::Scalar(1, 2, 3));
+  const sensor_msgs::ImagePtr message = colorMessage(header, wide.colRange(1, 4));
+  EXPECT_EQ(message->header.frame_id, "camera");
+  EXPECT_EQ(message->encoding, "bgr8");
+  EXPECT_EQ(message->height, 3U);
+  EXPECT_EQ(message->width, 3U);
+  EXPECT_EQ(message->step, 9U);
+  ASSERT_EQ(message->data.size(), 27U);
+  EXPECT_EQ(colorPixels(*message).at<cv::Vec3b>(2, 2), cv::Vec3b(1, 2, 3));
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ class ComparisonView {
   /// where there are more.
   /// \param window the exposure in event time
   /// \pre input and output are supported images of the same size
-  /// \throws cv_bridge::Exception
+  /// \throws cv::Exception, std::invalid_argument when they are not
   sensor_msgs::ImagePtr draw(const sensor_msgs::Image& input, const sensor_msgs::Image& output,
                              const ExposureInterval& window) const;
 
