@@ -93,6 +93,7 @@ class Deblurrer::Impl {
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                  std::int64_t now_ns);
   void noteLostEvents(std::size_t events) { events_.noteLost(events); }
+  void noteMissingArrays() { events_.noteMissing(); }
   void addFrame(InputFrame frame, std::int64_t now_ns);
   void addExposure(std::int32_t exposure_us, std::int64_t now_ns);
   void advance(std::int64_t now_ns);
@@ -610,6 +611,10 @@ void Deblurrer::addEvents(const WireEvents& events, SensorSize size, std::uint32
 
 void Deblurrer::noteLostEvents(std::size_t events) {
   impl_->noteLostEvents(events);
+}
+
+void Deblurrer::noteMissingArrays() {
+  impl_->noteMissingArrays();
 }
 
 void Deblurrer::addFrame(InputFrame frame, std::int64_t now_ns) {

@@ -58,6 +58,10 @@ void EventStream::noteLost(std::size_t events) {
   counters_.events_in += events;
   counters_.events_overflowed += events;
   sequence_gaps_.restart();  // the hole that follows in their numbers is this one
+  noteMissing();
+}
+
+void EventStream::noteMissing() {
   arrays_missing_ = true;
   markMissingArrays();
 }

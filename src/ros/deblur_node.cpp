@@ -360,7 +360,28 @@ LiveParameters::Values DeblurNode::reconfigure(const LiveParameters::Values& wan
 }
 
 void DeblurNode::advanceClock() {
-  whileListening([&] { deblurrer_->advance(callback_start_ns_); });
+  whileListening([&] {
+    deblurrer_->advance(callback_start_ns_);
+    guardAgainstOverload();
+  });
+}
+
+void DeblurNode::guardAgainstOverload() {
+  const DeblurCounters& counts = deblurrer_->counters();
+  switch (inputs_->overload.update(
+      callback_start_ns_, {counts.events_in, counts.events_overflowed, counts.frames_in})) {
+    case OverloadGuard::Advice::kGoOn:
+      break;
+    case OverloadGuard::Advice::kSuspend:
+      if (inputs_->events->suspend(
+              [this] { whileListening([&] { deblurrer_->noteMissingArrays(); }); })) {
+        ++totals_.event_suspensions;
+      }
+      break;
+    case OverloadGuard::Advice::kResume:
+      inputs_->events->resume();
+      break;
+  }
 }
 
 void DeblurNode::deliver(const sensor_msgs::ImagePtr& image, const sensor_msgs::CameraInfoPtr& info,

@@ -47,6 +47,32 @@ EventSubscription::~EventSubscription() {
   // Then waiting_ waits for a delivery at work.
 }
 
+bool EventSubscription::suspend(std::function<void()> on_suspended) {
+  ros::Subscriber last;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (takes_pointers_ || published_here_) {
+      return false;
+    }
+    suspended_ = true;
+    std::swap(last, subscriber_);
+  }
+  last.shutdown();
+  waiting_.add(0, std::move(on_suspended));
+  return true;
+}
+
+void EventSubscription::resume() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    // An array that was still waiting may have told of a publisher in this process.
+    if (!std::exchange(suspended_, false) || takes_pointers_) {
+      return;
+    }
+  }
+  subscribeToWire();
+}
+
 bool EventSubscription::takesPointers() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return takes_pointers_;
@@ -84,6 +110,7 @@ void EventSubscription::subscribeToWire() {
 }
 
 void EventSubscription::receive(const ros::MessageEvent<const EventArray>& event) {
+  published_here_ = event.getPublisherName() == ros::this_node::getName();
   waiting_.add(event.getConstMessage()->events().count, [this, event] { handOver(event); });
 }
 

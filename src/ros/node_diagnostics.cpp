@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "fast_edi/ros/overload_guard.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -97,6 +99,10 @@ void NodeDiagnostics::collectComplaints(const NodeSnapshot& now) {
            "frame(s)" + on_image + " gave no output: expected stamps that increase");
   complain("overflow", c.events_overflowed, b.events_overflowed,
            "event(s)" + on_events + " dropped: more than max_buffered_events at once");
+  complain("suspended", now.event_suspensions, before_.event_suspensions,
+           "time(s) that no events" + on_events + " were received for " +
+               secondsText(OverloadGuard::kPause_ns) +
+               ": more come than can be taken in, frames are passed through meanwhile");
   complain("late", c.events_late, b.events_late,
            "event(s)" + on_events + " dropped: older than the newest, expected increasing times");
   complain("outside", c.events_outside, b.events_outside,
@@ -224,6 +230,7 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
   status.add("Events glitched", c.events_glitched);
   status.add("Events overflowed", c.events_overflowed);
   status.add("Events refused", c.events_refused);
+  status.add("Event suspensions", now_.event_suspensions);
   status.add("Event array gaps", c.event_array_gaps);
   status.add("Event arrays missing", c.event_arrays_missing);
   status.add("Event publisher restarts", c.event_restarts);

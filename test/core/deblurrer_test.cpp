@@ -191,6 +191,23 @@ TEST_F(DeblurrerTest, AStillSceneIsDeblurredUnchanged) {
   EXPECT_EQ(counters().frames_deblurred, 1u);
 }
 
+TEST_F(DeblurrerTest, NoSceneIsStillWhileNobodyListensToItsEvents) {
+  events(0, 20, 20);
+  events(20, 40, 40);
+  pipeline().noteMissingArrays();
+  frame(20, 41);
+  frame(60, 70);
+  advance(70 + parameters.close_timeout_ns / kMs);
+  EXPECT_TRUE(output(0).deblurred);
+  expectPassed(1, PassReason::kEventsMissing);
+  EXPECT_EQ(counters().frames_still, 0u);
+  sequence += 5;
+  events(100, 150, 200);
+  frame(120, 201);
+  expectDeblurred(2);
+  EXPECT_EQ(counters().event_arrays_missing, 5u);
+}
+
 TEST_F(DeblurrerTest, AFrameBeforeItsEventsWaitsForThem) {
   frame(40, 0);
   events(0, 60, 50);

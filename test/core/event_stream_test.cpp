@@ -131,6 +131,21 @@ TEST_F(EventStreamTest, EventsDroppedOnTheWayLeaveAHoleThatIsNoGap) {
   EXPECT_TRUE(stream.covers({kStart + 40 * kMs, kStart + 50 * kMs}));
 }
 
+TEST_F(EventStreamTest, AHoleThatIsAnnouncedIsCountedByItsNumbers) {
+  take({kStart});
+  take({kStart + 10 * kMs});
+  stream.noteMissing();
+  EXPECT_TRUE(stream.covers({kStart, kStart + 10 * kMs}));
+  EXPECT_FALSE(stream.covers({kStart, kStart + 10 * kMs + 1}));
+  EXPECT_EQ(counters.event_array_gaps, 0u);
+  takeAs(sequence + 4, {kStart + 40 * kMs});
+  EXPECT_EQ(counters.event_array_gaps, 1u);
+  EXPECT_EQ(counters.event_arrays_missing, 3u);
+  EXPECT_FALSE(stream.covers({kStart + 30 * kMs, kStart + 40 * kMs}));
+  take({kStart + 50 * kMs});
+  EXPECT_TRUE(stream.covers({kStart + 40 * kMs, kStart + 50 * kMs}));
+}
+
 TEST_F(EventStreamTest, AHoleReachesOverEmptyArrays) {
   take({kStart});
   take({kStart + 10 * kMs});

@@ -86,6 +86,13 @@ def pid_of(node):
         return None
 
 
+def cpu_seconds(pid):
+    """Processor time that a process has used, in user and kernel mode."""
+    with open('/proc/%d/stat' % pid, encoding='utf-8') as stat:
+        fields = stat.read().rpartition(')')[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+
+
 def memory_kb(pid, key='VmRSS'):
     with open('/proc/%d/status' % pid, encoding='ascii') as status:
         for line in status:

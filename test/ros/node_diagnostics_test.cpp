@@ -168,7 +168,11 @@ TEST_F(NodeDiagnosticsTest, ComplainsOfWhatTheNodeItselfRefused) {
   now_.bias_refusal = "OffBn";
   now_.internal_errors = 1;
   now_.internal_error = "std::bad_alloc";
+  now_.event_suspensions = 2;
   const auto status = report();
+  EXPECT_THAT(status.message,
+              HasSubstr("2 time(s) that no events on /dvs/events were received for 2.0 s"));
+  EXPECT_EQ(value(status, "Event suspensions"), "2");
   EXPECT_THAT(status.message, HasSubstr("step 3 bytes"));
   EXPECT_THAT(status.message, HasSubstr("7 frame(s)"));
   EXPECT_THAT(status.message, HasSubstr("K holds"));

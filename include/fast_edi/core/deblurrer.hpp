@@ -60,6 +60,9 @@ class Deblurrer {
   /// many were waiting: counted as arrived and overflowed, and missing in the frames they belong
   /// to.
   void noteLostEvents(std::size_t events);
+  /// Arrays will be missing between the last one and the next: whoever feeds this stopped
+  /// listening. How many will be told by their numbers.
+  void noteMissingArrays();
   void addFrame(InputFrame frame, std::int64_t now_ns);
   void addExposure(std::int32_t exposure_us, std::int64_t now_ns);
   /// Closes what the passing of time alone decides. Call it at least every few milliseconds.

@@ -47,6 +47,8 @@ class EventStream {
   void take(const WireEvents& events, SensorSize size, std::uint32_t sequence);
   /// See Deblurrer::noteLostEvents().
   void noteLost(std::size_t events);
+  /// See Deblurrer::noteMissingArrays().
+  void noteMissing();
   /// Drops events whose time jump is not confirmed: no array will come any more.
   void dropHeld();
   /// Empties everything; the next array starts up anew.

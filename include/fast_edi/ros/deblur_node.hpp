@@ -28,6 +28,7 @@
 #include "fast_edi/ros/latency_record.hpp"
 #include "fast_edi/ros/message_frame_sink.hpp"
 #include "fast_edi/ros/node_diagnostics.hpp"
+#include "fast_edi/ros/overload_guard.hpp"
 #include "fast_edi/ros/reconfigure_server.hpp"
 #include "fast_edi/ros/side_thread.hpp"
 
@@ -82,6 +83,7 @@ class DeblurNode {
     ros::Subscriber exposure;
     ros::Subscriber bias_updates;
     std::unique_ptr<EventSubscription> events;
+    OverloadGuard overload;
   };
 
   void configure();
@@ -100,6 +102,7 @@ class DeblurNode {
   void receiveBiasUpdate(const dynamic_reconfigure::ConfigConstPtr& message);
   LiveParameters::Values reconfigure(const LiveParameters::Values& wanted);
   void advanceClock();
+  void guardAgainstOverload();
   void report();
 
   LoadedParameters withDriverBiases(const dynamic_reconfigure::ConfigConstPtr& biases) const;

@@ -16,6 +16,7 @@
 /// their callback where their memory is bounded, see waiting_arrays.hpp.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -57,6 +58,13 @@ class EventSubscription {
   /// See WaitingArrays.
   void limitWaiting(std::size_t events) { waiting_.limitEvents(events); }
 
+  /// Receives nothing until resume(), if arrays come from another process. What waits is delivered
+  /// still, then \p on_suspended is called from the callback queue.
+  /// \return false when they come from this one, where nothing has to be received
+  bool suspend(std::function<void()> on_suspended);
+  /// Receives again. Nothing unless suspended.
+  void resume();
+
   /// True while arrays are taken as pointers to the generated type.
   bool takesPointers() const;
 
@@ -85,12 +93,14 @@ class EventSubscription {
   Handler handler_;
   ImmediateQueue immediate_queue_;
   WaitingArrays waiting_;
+  std::atomic<bool> published_here_{false};  ///< the last array came from this process
   std::vector<std::uint8_t> records_;  ///< packed events of the array at hand
 
   /// Guards what is below: a callback may replace the subscription while another thread ends it.
   /// Held only to read or exchange them, never while calling ROS.
   mutable std::mutex mutex_;
   bool ended_ = false;
+  bool suspended_ = false;
   bool takes_pointers_ = false;
   ros::Subscriber subscriber_;  ///< to be gone before what is above
 };

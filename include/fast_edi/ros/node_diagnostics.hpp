@@ -33,7 +33,8 @@ struct NodeSnapshot {
   DeblurStatus status;
   std::uint64_t frames_out = 0;
   std::uint64_t frames_malformed = 0;
-  std::uint64_t frames_missing = 0;  ///< numbers left out in header.seq of the images
+  std::uint64_t frames_missing = 0;     ///< numbers left out in header.seq of the images
+  std::uint64_t event_suspensions = 0;  ///< times that events were not received, see OverloadGuard
   std::uint64_t camera_infos_refused = 0;
   std::uint64_t bias_updates_refused = 0;
   std::uint64_t reconfigurations = 0;  ///< requests to change parameters
