@@ -13,8 +13,8 @@
 
 #include "fast_edi/core/image.hpp"
 
-// By OpenCV alone: cv_bridge brings imgcodecs, on Debian with it GDAL and 150 more libraries, which
-// cost a nodelet manager 30 MB.
+// By OpenCV alone: cv_bridge brings imgcodecs, and on Debian with it GDAL and a hundred libraries
+// more, which cost a nodelet manager over 30 MB.
 
 namespace fast_edi {
 namespace {
