@@ -117,6 +117,7 @@ class Deblurrer::Impl {
   void closeReady();
   void closeFront(const FrameVerdict& verdict);
   void closeFrontWithWhatHasCome();
+  void forgetBefore(std::int64_t t_ns);
   void beforeBreak(StreamBreak kind, std::int64_t next_event_ns);
   void deblur(OutputFrame& output, const ExposureInterval& window);
   void passThrough(OutputFrame& output, PassReason reason);
@@ -424,18 +425,20 @@ void Deblurrer::Impl::closeFront(const FrameVerdict& verdict) {
     passThrough(output, verdict.reason);
   }
 
-  if (exposure_known) {
-    if (frame.epoch == epoch_) {
-      predictor_.observe(output.exposure);
-    }
-    // A stamp far ahead of all events is no reason to throw them away.
-    if (events_.isPast(window.start_ns)) {
-      const bool pair_open = calibration_.has_value();
-      events_.discardBefore(pair_open ? std::min(window.start_ns, calibration_->neededFrom())
-                                      : window.start_ns);
-    }
+  if (exposure_known && frame.epoch == epoch_) {
+    predictor_.observe(output.exposure);
   }
+  // Where no exposure is known, the next frame's may reach back as far as any can.
+  forgetBefore(exposure_known ? window.start_ns : window.start_ns - kMaxExposure_ns);
   expectNext();
+}
+
+/// Drops events that neither a later frame nor the calibration needs.
+void Deblurrer::Impl::forgetBefore(std::int64_t t_ns) {
+  // A stamp far ahead of all events is no reason to throw them away.
+  if (events_.isPast(t_ns)) {
+    events_.discardBefore(calibration_ ? std::min(t_ns, calibration_->neededFrom()) : t_ns);
+  }
 }
 
 void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window) {

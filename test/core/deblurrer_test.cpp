@@ -191,6 +191,27 @@ TEST_F(DeblurrerTest, AStillSceneIsDeblurredUnchanged) {
   EXPECT_EQ(counters().frames_deblurred, 1u);
 }
 
+TEST_F(DeblurrerTest, KeepsNoMoreEventsThanTheLongestExposureNeedsWhileItIsUnknown) {
+  constexpr std::size_t kEventsOfArray = 20'000;  // of 100 ms
+  constexpr std::size_t kMost = 12 * kEventsOfArray + PixelEventLists::kChunkEvents;
+  parameters.exposure_time_ns = 0;
+  for (std::int64_t end_ms = 100; end_ms <= 4000; end_ms += 100) {
+    events(testing::makeEvents(testing::EventScene::kUniform,
+                               {kSize, kEventsOfArray, kZero + (end_ms - 100) * kMs, 100 * kMs,
+                                static_cast<std::uint64_t>(end_ms)}),
+           end_ms);
+    frame(end_ms - 50, end_ms);
+    EXPECT_LE(pipeline().status().buffered_events, kMost);
+  }
+  expectPassed(39, PassReason::kExposureUnknown);
+  parameters.exposure_time_ns = kMaxExposure_ns;
+  pipeline().setParameters(parameters);
+  events(4000, 4600, 5000);
+  frame(4050, 5001);
+  ASSERT_EQ(outputs().size(), 41U);
+  EXPECT_TRUE(output(40).deblurred) << toString(output(40).pass_reason);
+}
+
 TEST_F(DeblurrerTest, NoSceneIsStillWhileNobodyListensToItsEvents) {
   events(0, 20, 20);
   events(20, 40, 40);

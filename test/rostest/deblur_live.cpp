@@ -6,6 +6,7 @@
 //   /fallback  as /quick, with exposure_time_us
 //   /unexposed as /quick
 //   /biased    thresholds from biases
+//   /crowded   max_buffered_events 1000
 //   /filmed    as /patient, with latent_images 4
 
 #include <algorithm>
@@ -23,6 +24,7 @@
 
 #include "rostest/child_process.hpp"
 #include "rostest/expectations.hpp"
+#include "rostest/made_up_camera.hpp"
 #include "rostest/node_client.hpp"
 #include "rostest/recording.hpp"
 #include "support/temporary_directory.hpp"
@@ -133,6 +135,32 @@ TEST_F(Live, DeblursWhatAnotherProcessPublishes) {
   settings.size = {346, 260};
   settings.frames = 20;
   expectDeblurred(makeRecording(settings), testParameters());
+}
+
+TEST_F(Live, TakesABreakFromEventsThatAreTooMany) {
+  connectTo("/crowded");
+  RecordingSettings settings = laterSettings();
+  settings.event_period_ns = 5 * kNanosecondsPerMicrosecond;  // an array holds several thousand
+  {
+    const MadeUpCamera camera("/crowded", settings, 1);
+    const auto suspended = [this](int times) {
+      return client_->waitForReport([times](const DiagnosticStatus& status) {
+        return valueOf(status, "Event suspensions") == std::to_string(times);
+      });
+    };
+    ASSERT_TRUE(suspended(1));
+    ASSERT_TRUE(suspended(2)) << "the events did not come back";
+    EXPECT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
+      return contains(status.message, "no events on /crowded/events were received for 2.0 s");
+    }));
+  }
+  EXPECT_TRUE(waitUntil([this] { return client_->allInputsConnected(); }));
+  EXPECT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
+    return valueOf(status, "Frames in") == valueOf(status, "Frames out") &&
+           valueOf(status, "Backlog: waiting frames") == "0";
+  })) << "frames were lost";
+  EXPECT_NE(valueOf(client_->report(), "Event array gaps"), "0");
+  EXPECT_EQ(valueOf(client_->report(), "Frames deblurred"), "0");
 }
 
 TEST_F(Live, KeepsEveryEncoding) {
