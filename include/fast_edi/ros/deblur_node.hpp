@@ -52,7 +52,7 @@ namespace fast_edi {
 /// subscribing, diagnostics) or of WaitingArrays. The SideThread is stopped without mutex_. The
 /// other way round would be to hold mutex_ while waiting for a callback to end, which may be
 /// waiting for mutex_. So what waits for callbacks (ending subscriptions, timers and publishers) is
-/// done without holding it.
+/// done without holding it. Suspending the events waits for none: they have no queue in roscpp.
 ///
 /// Closing. First the SideThread ends, then the inputs and the clock, then the report, then the
 /// publishers, which are never replaced before: at no time can a callback meet a publisher that is
@@ -102,6 +102,7 @@ class DeblurNode {
   void receiveBiasUpdate(const dynamic_reconfigure::ConfigConstPtr& message);
   LiveParameters::Values reconfigure(const LiveParameters::Values& wanted);
   void advanceClock();
+  /// Stops and resumes receiving events, see OverloadGuard.
   void guardAgainstOverload();
   void report();
 
