@@ -72,12 +72,12 @@ void printRow(std::ostream& out, const VideoQuality& quality) {
   for (const double psnr_db : quality.psnr_db) {
     out << " " << psnr_db << " |";
   }
-  out << " " << quality.loss_db() << " | " << quality.largest_loss_db << " |\n";
+  out << " " << quality.lossDb() << " | " << quality.largest_loss_db << " |\n";
 }
 
 }  // namespace
 
-double VideoQuality::loss_db() const {
+double VideoQuality::lossDb() const {
   return psnr_db.empty()
              ? 0.0
              : psnr_db[psnr_db.size() / 2] - *std::min_element(psnr_db.begin(), psnr_db.end());

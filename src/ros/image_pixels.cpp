@@ -57,8 +57,8 @@ const Conversion& conversionOf(const std::string& encoding) {
 /// The message's own memory; 16 bits are scaled down to 8.
 cv::Mat eightBits(const sensor_msgs::Image& message, int type) {
   // OpenCV takes a non-const buffer; nobody writes to this one.
-  const cv::Mat shared(static_cast<int>(message.height), static_cast<int>(message.width), type,
-                       const_cast<std::uint8_t*>(message.data.data()), message.step);
+  cv::Mat shared(static_cast<int>(message.height), static_cast<int>(message.width), type,
+                 const_cast<std::uint8_t*>(message.data.data()), message.step);
   if (type != kTwoBytes) {
     return shared;
   }
@@ -72,7 +72,7 @@ cv::Mat eightBits(const sensor_msgs::Image& message, int type) {
 
 cv::Mat greyPixels(const sensor_msgs::Image& message) {
   const Conversion& conversion = conversionOf(message.encoding);
-  const cv::Mat pixels = eightBits(message, conversion.type);
+  cv::Mat pixels = eightBits(message, conversion.type);
   if (conversion.to_grey == kAsItIs) {
     return pixels;
   }
@@ -83,7 +83,7 @@ cv::Mat greyPixels(const sensor_msgs::Image& message) {
 
 cv::Mat colorPixels(const sensor_msgs::Image& message) {
   const Conversion& conversion = conversionOf(message.encoding);
-  const cv::Mat pixels = eightBits(message, conversion.type);
+  cv::Mat pixels = eightBits(message, conversion.type);
   if (conversion.to_color == kAsItIs) {
     return pixels.clone();
   }
@@ -93,7 +93,7 @@ cv::Mat colorPixels(const sensor_msgs::Image& message) {
 }
 
 sensor_msgs::ImagePtr colorMessage(const std_msgs::Header& header, const cv::Mat& color) {
-  const auto message = boost::make_shared<sensor_msgs::Image>();
+  auto message = boost::make_shared<sensor_msgs::Image>();
   message->header = header;
   const auto rows = static_cast<std::uint32_t>(color.rows);
   const auto columns = static_cast<std::uint32_t>(color.cols);

@@ -36,13 +36,13 @@ TEST(VideoQuality, MeasuresEachInstantOfEachExposure) {
     EXPECT_GT(psnr_db, 15.0);
     EXPECT_LT(psnr_db, 50.0);
   }
-  EXPECT_GE(quality.loss_db(), 0.0);
-  EXPECT_GE(quality.largest_loss_db, quality.loss_db());
+  EXPECT_GE(quality.lossDb(), 0.0);
+  EXPECT_GE(quality.largest_loss_db, quality.lossDb());
 }
 
 TEST(VideoQuality, TheMiddleImageIsTheDeblurredFrame) {
   EXPECT_DOUBLE_EQ(qualityOf({}, 1, 0).psnr_db.front(), qualityOf({}, 3, 0).psnr_db[1]);
-  EXPECT_EQ(qualityOf({}, 1, 0).loss_db(), 0.0);
+  EXPECT_EQ(qualityOf({}, 1, 0).lossDb(), 0.0);
 }
 
 TEST(VideoQuality, FollowsTheParameters) {

@@ -23,7 +23,7 @@ struct VideoQuality {
   double largest_loss_db = 0;   ///< of one image against the middle one of the same exposure
 
   /// Mean PSNR of the middle image less that of the worst instant [dB].
-  double loss_db() const;
+  double lossDb() const;
 };
 
 /// \param parameters of the pipeline; thresholds and exposure are those of the simulated sensor
