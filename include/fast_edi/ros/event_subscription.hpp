@@ -94,7 +94,7 @@ class EventSubscription {
   ImmediateQueue immediate_queue_;
   WaitingArrays waiting_;
   std::atomic<bool> published_here_{false};  ///< the last array came from this process
-  std::vector<std::uint8_t> records_;  ///< packed events of the array at hand
+  std::vector<std::uint8_t> records_;        ///< packed events of the array at hand
 
   /// Guards what is below: a callback may replace the subscription while another thread ends it.
   /// Held only to read or exchange them, never while calling ROS.
