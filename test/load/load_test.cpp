@@ -25,7 +25,7 @@ TEST(Load, NoFrameIsLostAndMemoryIsBoundedOverTcp) {
 }
 
 TEST(Soak, MemoryStaysAndNoFrameIsLost) {
-  const auto result = runScript("soak --minutes 0.1 --segment-seconds 2 --speed 1 --no-plot");
+  const auto result = runScript("soak --minutes 1 --segment-seconds 6 --speed 1 --no-plot");
   EXPECT_EQ(result.exit_code, 0) << result.output;
 }
 
