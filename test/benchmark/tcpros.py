@@ -9,16 +9,18 @@ the environment of the build (devel/setup.bash). Writes a JSON list, one entry f
 import argparse
 import json
 import os
+import pathlib
 import signal
-import socket
 import subprocess
 import sys
 import time
 
-import roslib.packages
 import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'faults'))
+from processes import cpu_seconds, find_program, free_port, memory_kb  # noqa: E402 (needs the path)
 
 NAMESPACE = '/dvs'
 NODELET = NAMESPACE + '/deblur'
@@ -48,41 +50,12 @@ class Case:
         return arguments + (['--unpaced'] if self.unpaced else [])
 
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(('localhost', 0))
-        return probe.getsockname()[1]
-
-
-def find_program(package, name):
-    found = roslib.packages.find_node(package, name)
-    if not found:
-        sys.exit('%s/%s was not found: was devel/setup.bash sourced and the target built?'
-                 % (package, name))
-    return found[0]
-
-
 def wait_until(condition, timeout_s, what):
     deadline = time.monotonic() + timeout_s
     while not condition():
         if time.monotonic() > deadline:
             raise RuntimeError('%s: not within %d s' % (what, timeout_s))
         time.sleep(0.05)
-
-
-def processor_seconds(pid):
-    with open('/proc/%d/stat' % pid) as stat:
-        fields = stat.read().rsplit(')', 1)[1].split()
-    user_ticks, system_ticks = int(fields[11]), int(fields[12])
-    return (user_ticks + system_ticks) / os.sysconf('SC_CLK_TCK')
-
-
-def memory_mb(pid, key):
-    with open('/proc/%d/status' % pid) as status:
-        for line in status:
-            if line.startswith(key + ':'):
-                return int(line.split()[1]) * 1024 / 1e6
-    raise RuntimeError('no %s in /proc/%d/status' % (key, pid))
 
 
 class Process:
@@ -152,15 +125,15 @@ def measure(case, nodelet_processor, other_processors):
                 generator + case.arguments(), stdout=subprocess.PIPE, text=True,
                 preexec_fn=lambda: os.sched_setaffinity(0, other_processors)) as load:
             wait_until(lambda: output.get_num_connections() > 0, START_TIMEOUT_S, 'the output topic')
-            cpu_before, time_before = processor_seconds(child.pid), time.monotonic()
+            cpu_before, time_before = cpu_seconds(child.pid), time.monotonic()
             report = load.communicate(timeout=case.seconds + START_TIMEOUT_S + SETTLE_TIMEOUT_S)[0]
             elapsed_s = time.monotonic() - time_before
             if load.returncode != 0:
                 raise RuntimeError('the load generator failed')
-        cpu_s = processor_seconds(child.pid) - cpu_before
+        cpu_s = cpu_seconds(child.pid) - cpu_before
         sent = json.loads(report)
         diagnostics.settle()
-        resident_mb, peak_mb = memory_mb(child.pid, 'VmRSS'), memory_mb(child.pid, 'VmHWM')
+        resident_mb, peak_mb = (memory_kb(child.pid, key) * 1024 / 1e6 for key in ('VmRSS', 'VmHWM'))
     diagnostics.subscriber.unregister()
     output.unregister()
 
