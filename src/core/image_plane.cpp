@@ -1,0 +1,56 @@
+#include "fast_edi/core/image_plane.hpp"
+
+#include <cstring>
+
+namespace fast_edi {
+namespace {
+
+/// Truncation rounds to nearest after this is added to a number that is not negative.
+constexpr float kHalf = 0.5F;
+
+template <typename Level>
+void loadRow(const std::uint8_t* in, std::size_t count, std::size_t channels, float* out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    Level level;
+    std::memcpy(&level, in + i * channels * sizeof(Level), sizeof(Level));
+    out[i] = static_cast<float>(level);
+  }
+}
+
+template <typename Level>
+void storeRow(const float* in, std::size_t count, std::size_t channels, std::uint8_t* out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto level = static_cast<Level>(static_cast<int>(in[i] + kHalf));
+    std::memcpy(out + i * channels * sizeof(Level), &level, sizeof(Level));
+  }
+}
+
+}  // namespace
+
+void loadPlane(const ImageView& image, int channel, float* plane) {
+  const auto width = static_cast<std::size_t>(image.size.width);
+  const auto count = static_cast<std::size_t>(channels(image.format));
+  for (int y = 0; y < image.size.height; ++y) {
+    float* row = plane + static_cast<std::size_t>(y) * width;
+    if (image.format == PixelFormat::kMono16) {
+      loadRow<std::uint16_t>(image.row(y), width, count, row);
+    } else {
+      loadRow<std::uint8_t>(image.row(y) + channel, width, count, row);
+    }
+  }
+}
+
+void storePlane(const float* plane, int channel, const MutableImageView& image) {
+  const auto width = static_cast<std::size_t>(image.size.width);
+  const auto count = static_cast<std::size_t>(channels(image.format));
+  for (int y = 0; y < image.size.height; ++y) {
+    const float* row = plane + static_cast<std::size_t>(y) * width;
+    if (image.format == PixelFormat::kMono16) {
+      storeRow<std::uint16_t>(row, width, count, image.row(y));
+    } else {
+      storeRow<std::uint8_t>(row, width, count, image.row(y) + channel);
+    }
+  }
+}
+
+}  // namespace fast_edi
