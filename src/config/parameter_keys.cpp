@@ -179,6 +179,10 @@ std::vector<ConfigKey> filterKeys() {
               [](bool value, ParameterDraft& draft) {
                 draft.loaded.deblur.filter.frame_noise = value;
               }),
+      boolKey({"filter_motion", "", boolText(defaults.motion),
+               "steady the images of `latent/image_raw` by that of the middle of the exposure, "
+               "along the motion"},
+              [](bool value, ParameterDraft& draft) { draft.loaded.deblur.filter.motion = value; }),
       boolKey(
           {"refine_contrast", "", boolText(DeblurParameters{}.refine_contrast),
            "learn the contrast thresholds from consecutive frames, within 30 % of those given"},

@@ -164,6 +164,21 @@ def bags(results, table):
               '%.0f %%' % (100 * results.bag['share_of_copy']), results.bag['share_of_copy'] >= 0.5)
 
 
+def video(results, table):
+    """An image's cost is the slope between 8 and 32 images for each exposure."""
+    for filters in ('plain', 'without_motion', 'default'):
+        costs = []
+        for events in (400000, 4000000):
+            names = ['video/%s/%d/%d' % (filters, events, images) for images in (8, 32)]
+            times = [results.get(name, 'frame_ms') for name in names]
+            images = [results.get(name, 'images') for name in names]
+            if None not in times + images:
+                costs.append((times[1] - times[0]) / (images[1] - images[0]))
+        if len(costs) == 2:
+            table.add('image of the high-rate video, %s, 0.4 M and 4 M events in an exposure' %
+                      filters.replace('_', ' '), '', '%.2f and %.2f ms' % tuple(costs))
+
+
 def also_measured(results, table):
     for name in ('plain_copy', 'event_lists', 'one_by_one', 'generated_message_code'):
         rate = results.get('wire_decoding/' + name, 'items_per_second')
@@ -198,7 +213,8 @@ def main():
         sys.exit(__doc__)
     results = Results(sys.argv[1])
     table = Table()
-    for part in (end_to_end, closing, taking_in, memory, tcpros, bags, also_measured):
+    for part in (end_to_end, closing, taking_in, memory, tcpros, bags, video,
+                 also_measured):
         part(results, table)
     print(table.text())
     print(results.footnote())

@@ -12,8 +12,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-EvaluationSequence shortSequence() {
-  EvaluationSequence sequence = evaluationSequences(4, 1).front();
+/// \param scene 0 is shaken strongly, 1 mildly
+EvaluationSequence shortSequence(std::size_t scene = 0) {
+  EvaluationSequence sequence = evaluationSequences(4, 1)[scene];
   sequence.settings.sensor.size = {120, 90};
   sequence.settings.scene.tags = 1;
   sequence.settings.motion.focal_length_px = 110.0;
@@ -49,6 +50,18 @@ TEST(VideoQuality, FollowsTheParameters) {
   DeblurParameters plain;
   plain.filter.enabled = false;
   EXPECT_LT(qualityOf(plain, 1, 0).psnr_db.front(), qualityOf({}, 1, 0).psnr_db.front());
+}
+
+TEST(VideoQuality, GainsByMotionCompensationWhereverItIsNotTheMiddle) {
+  DeblurParameters still;
+  still.filter.motion = false;
+  const VideoQuality without = videoQuality(shortSequence(1), still, 5, 1, [](int) {});
+  const VideoQuality with = videoQuality(shortSequence(1), {}, 5, 1, [](int) {});
+  EXPECT_EQ(with.psnr_db[2], without.psnr_db[2]);
+  for (const std::size_t end : {0U, 4U}) {
+    EXPECT_GT(with.psnr_db[end], without.psnr_db[end] + 1.0);
+  }
+  EXPECT_LT(with.lossDb(), without.lossDb() - 1.0);
 }
 
 TEST(VideoQuality, WantsAMiddle) {

@@ -5,8 +5,10 @@
 //   /biased  thresholds from biases
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <condition_variable>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -261,15 +263,19 @@ TEST_F(Reconfigure, WorksByTheCommandLineTool) {
 
 TEST_F(Reconfigure, BeginsAndEndsTheHighRateVideo) {
   connectTo("/tuned");
-  int images = 0;
+  // Those of the recording at hand: images of the one before may still be on their way.
+  std::atomic<int> images{0};
+  std::atomic<std::uint64_t> since_ns{0};
   const ros::Subscriber latent = client_->nodeHandle().subscribe<sensor_msgs::Image>(
-      "/tuned/latent/image_raw", 1000,
-      [&images](const sensor_msgs::ImageConstPtr& image) { images += image->width == 64 ? 1 : 0; });
+      "/tuned/latent/image_raw", 1000, [&](const sensor_msgs::ImageConstPtr& image) {
+        images += image->width == 64 && image->header.stamp.toNSec() >= since_ns ? 1 : 0;
+      });
   ASSERT_TRUE(waitUntil([] { return publisherSendsToUs("/tuned/latent/image_raw"); }));
   std::size_t outputs = 0;
   const auto film = [&] {
-    images = 0;
     const Recording recording = laterRecording();
+    since_ns = imagesOf(recording).front()->header.stamp.toNSec();
+    images = 0;
     outputs += imagesOf(recording).size();
     client_->play(recording);
     EXPECT_EQ(client_->waitForOutputs(outputs).size(), outputs);

@@ -2,19 +2,22 @@
 /// The high-rate video: latent images within each exposure, and between two exposures where events
 /// bridge the gap.
 ///
-///     gains at the reference time -> LatentGains at each instant -> LatentImage -> FrameSink
+///     gains at the reference time -> LatentGains at each instant -> LatentImage
+///                                 -> MotionCompensation by the image of the middle -> FrameSink
 ///
 /// Instants within an exposure are shown from its own frame. Those in the gap to the exposure
 /// before are shown from the frame that is nearer, once the later one has come: their events are
 /// complete then. No image where events are missing, none from a frame that was passed through,
 /// none in a gap of more than kMaxGap_ns: what events say grows less certain with time.
 ///
-/// Complexity. O(events from one exposure's end to the next, at most three times, + images *
-/// pixels) for each frame. Memory: 20 B per pixel once used.
+/// Complexity. O(events from one exposure's end to the next, at most four times, + images *
+/// pixels) for each frame. Memory once used: 20 B per pixel, and some 60 more for grey images with
+/// MotionCompensation.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -22,6 +25,7 @@
 #include "fast_edi/core/frame_sink.hpp"
 #include "fast_edi/core/latent_gains.hpp"
 #include "fast_edi/core/latent_image.hpp"
+#include "fast_edi/core/motion_compensation.hpp"
 #include "fast_edi/core/parameters.hpp"
 #include "fast_edi/core/types.hpp"
 
@@ -62,8 +66,11 @@ class LatentVideo {
     std::uint64_t epoch = 0;       ///< of the frames' clock
     std::uint64_t generation = 0;  ///< of the event lists
     LatentGains gains;
+    std::vector<std::uint8_t> middle;  ///< latent image at mid-exposure; empty: none
   };
 
+  void showMiddle(const EventStream& events, const DeblurParameters& parameters);
+  MotionCompensation* compensationFor(const Source& source);
   std::size_t bridgeGap(const EventStream& events, const DeblurParameters& parameters);
   std::size_t show(Source& source, const std::vector<std::int64_t>& instants,
                    const EventStream& events, const DeblurParameters& parameters);
@@ -77,6 +84,7 @@ class LatentVideo {
   std::uint64_t stamp_epoch_ = 0;
   std::optional<std::int64_t> last_stamp_ns_;  ///< of the images written in that epoch
   std::vector<float> gain_;
+  std::unique_ptr<MotionCompensation> compensation_;
 };
 
 }  // namespace fast_edi
