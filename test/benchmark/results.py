@@ -2,7 +2,7 @@
 import json
 import os
 
-PROGRAMS = ('wire_decoding', 'intra_process', 'append', 'close', 'end_to_end', 'recording')
+PROGRAMS = ('wire_decoding', 'intra_process', 'append', 'close', 'end_to_end', 'video', 'recording')
 
 
 class Results:
