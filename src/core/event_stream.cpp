@@ -28,6 +28,7 @@ EventStream::EventStream(PixelEventLists::Limits limits, DeblurCounters& counter
 void EventStream::take(const WireEvents& events, SensorSize size, std::uint32_t sequence) {
   ++counters_.event_arrays;
   counters_.events_in += events.count;
+  stopped_ = false;
   const bool refused = !isValid(size);
   const SequenceStep step = sequence_gaps_.step(sequence);
   counters_.event_array_gaps += step == SequenceStep::kGap ? 1 : 0;
@@ -58,10 +59,12 @@ void EventStream::noteLost(std::size_t events) {
   counters_.events_in += events;
   counters_.events_overflowed += events;
   sequence_gaps_.restart();  // the hole that follows in their numbers is this one
-  noteMissing();
+  arrays_missing_ = true;
+  markMissingArrays();
 }
 
 void EventStream::noteMissing() {
+  stopped_ = true;
   arrays_missing_ = true;
   markMissingArrays();
 }
@@ -179,6 +182,7 @@ void EventStream::restart() {
     flush();
   }
   seen_ = false;
+  stopped_ = false;
   arrays_missing_ = false;
   sequence_gaps_.restart();
 }

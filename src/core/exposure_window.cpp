@@ -62,7 +62,7 @@ FrameVerdict ExposureWindow::judge(const FrameTraits& frame, const EventStream& 
   const ExposureInterval window = inEventTime(parameters);
   const bool covered = events.covers(window);
   if (!out_of_time) {
-    if (!events.hasReached(window.end_ns)) {
+    if (!events.hasReached(window.end_ns) && !events.stopped()) {
       return waiting(FrameState::kWaitingForEvents);
     }
     if (frame.after_time_jump && !covered &&

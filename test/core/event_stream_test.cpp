@@ -134,11 +134,14 @@ TEST_F(EventStreamTest, EventsDroppedOnTheWayLeaveAHoleThatIsNoGap) {
 TEST_F(EventStreamTest, AHoleThatIsAnnouncedIsCountedByItsNumbers) {
   take({kStart});
   take({kStart + 10 * kMs});
+  EXPECT_FALSE(stream.stopped());
   stream.noteMissing();
+  EXPECT_TRUE(stream.stopped());
   EXPECT_TRUE(stream.covers({kStart, kStart + 10 * kMs}));
   EXPECT_FALSE(stream.covers({kStart, kStart + 10 * kMs + 1}));
   EXPECT_EQ(counters.event_array_gaps, 0u);
   takeAs(sequence + 4, {kStart + 40 * kMs});
+  EXPECT_FALSE(stream.stopped());
   EXPECT_EQ(counters.event_array_gaps, 1u);
   EXPECT_EQ(counters.event_arrays_missing, 3u);
   EXPECT_FALSE(stream.covers({kStart + 30 * kMs, kStart + 40 * kMs}));

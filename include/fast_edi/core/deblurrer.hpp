@@ -61,7 +61,8 @@ class Deblurrer {
   /// to.
   void noteLostEvents(std::size_t events);
   /// Arrays will be missing between the last one and the next: whoever feeds this stopped
-  /// listening. How many will be told by their numbers.
+  /// listening. How many will be told by their numbers. Until the next array, frames that would
+  /// wait for events are passed through at once.
   void noteMissingArrays();
   void addFrame(InputFrame frame, std::int64_t now_ns);
   void addExposure(std::int32_t exposure_us, std::int64_t now_ns);

@@ -58,6 +58,8 @@ class EventStream {
   /// Nothing before \p t_ns will be asked for any more.
   void discardBefore(std::int64_t t_ns);
 
+  /// True from noteMissing() until the next array: to wait for events is no use.
+  bool stopped() const { return stopped_; }
   /// True once a valid array came, be it empty.
   bool seen() const { return seen_; }
   /// Null until the first valid array. \pre use only while seen()
@@ -89,6 +91,7 @@ class EventStream {
   std::unique_ptr<PixelEventLists> lists_;
   bool seen_ = false;
   SequenceGaps sequence_gaps_;
+  bool stopped_ = false;
   bool arrays_missing_ = false;  ///< between the last array taken in and the next
   EventCoverage coverage_;
   std::uint64_t generation_ = 0;
