@@ -5,19 +5,18 @@
 #include <stdexcept>
 #include <string>
 
+#include "range_weight.hpp"
 #include "vector_clones.hpp"
 
 namespace fast_edi {
 namespace {
 
 constexpr int kDiameter = 2 * EdgePreservingFilter::kRadius + 1;
-/// Makes up for twice max(0, t) to the fourth power in addNeighbours().
-constexpr float kWeightScale = 1.0F / 16.0F;
 
 /// Adds one row of neighbours (dx = -2..2) to the sums of one row of pixels.
 /// \param centre the row of pixels
 /// \param neighbours the row of neighbours at dx = 0
-/// \param spatial distance weights for dx = -2..2, times kWeightScale
+/// \param spatial distance weights for dx = -2..2, times kRangeWeightScale
 FAST_EDI_VECTOR_CLONES
 void addNeighbours(const float* __restrict centre, const float* __restrict neighbours,
                    std::size_t width, std::ptrdiff_t stride, float inverse_range,
@@ -31,11 +30,8 @@ void addNeighbours(const float* __restrict centre, const float* __restrict neigh
       const float d = neighbours[static_cast<std::ptrdiff_t>(x) +
                                  (k - EdgePreservingFilter::kRadius) * stride] -
                       p;
-      const float t = 1.0F - d * d * inverse_range;
-      // Twice max(0, t), without a comparison, which would keep GCC from vectorising the loop.
-      const float twice = t + std::fabs(t);
-      const float squared = twice * twice;
-      const float w = spatial[k] * squared * squared;
+      const float root = rangeWeightRoot(d, inverse_range);
+      const float w = spatial[k] * root * root;
       sum += w * d;
       sum_weight += w;
     }
@@ -102,7 +98,7 @@ void EdgePreservingFilter::pad(const float* in) {
 
 void EdgePreservingFilter::apply(const float* in, float* out) {
   pad(in);
-  const float inverse_range = 1.0F / (8.0F * settings_.range_sigma * settings_.range_sigma);
+  const float inverse_range = inverseRange(settings_.range_sigma);
   const float inverse_space = 1.0F / (2.0F * settings_.spatial_sigma * settings_.spatial_sigma);
   const auto width = static_cast<std::size_t>(size_.width);
   const auto stride = static_cast<std::ptrdiff_t>(settings_.stride_px);
@@ -115,7 +111,7 @@ void EdgePreservingFilter::apply(const float* in, float* out) {
       float spatial[kDiameter];
       for (int dx = -kRadius; dx <= kRadius; ++dx) {
         spatial[dx + kRadius] =
-            kWeightScale * std::exp(-static_cast<float>(dx * dx + dy * dy) * inverse_space);
+            kRangeWeightScale * std::exp(-static_cast<float>(dx * dx + dy * dy) * inverse_space);
       }
       const float* neighbours = centre + dy * stride * static_cast<std::ptrdiff_t>(padded_width_);
       addNeighbours(centre, neighbours, width, stride, inverse_range, spatial, weighted_.data(),

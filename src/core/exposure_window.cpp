@@ -61,8 +61,8 @@ FrameVerdict ExposureWindow::judge(const FrameTraits& frame, const EventStream& 
 
   const ExposureInterval window = inEventTime(parameters);
   const bool covered = events.covers(window);
-  if (!out_of_time) {
-    if (!events.hasReached(window.end_ns) && !events.stopped()) {
+  if (!out_of_time && !events.stopped()) {
+    if (!events.hasReached(window.end_ns)) {
       return waiting(FrameState::kWaitingForEvents);
     }
     if (frame.after_time_jump && !covered &&

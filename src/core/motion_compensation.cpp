@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "fast_edi/core/image_plane.hpp"
+#include "range_weight.hpp"
 #include "vector_clones.hpp"
 
 namespace fast_edi {
@@ -41,14 +41,10 @@ void sumOfRows(const float* const* rows, std::size_t count, std::size_t width,
 FAST_EDI_VECTOR_CLONES
 void addWeighted(const float* __restrict difference, const float* __restrict mean_difference,
                  std::size_t count, float floor, float highest, float* __restrict own) {
-  constexpr float kInverse = 1.0F / (8.0F * kDisagreement * kDisagreement);
+  constexpr float kInverseRange = inverseRange(kDisagreement);
   for (std::size_t i = 0; i < count; ++i) {
-    const float relative = mean_difference[i] / (own[i] + floor);
-    // Close to exp(-d^2 / (2 sigma^2)), see edge_preserving_filter.hpp.
-    const float t = 1.0F - relative * relative * kInverse;
-    const float twice = t + std::fabs(t);
-    const float squared = twice * twice;
-    const float w = squared * squared * (kMaxWeight / 16.0F);
+    const float root = rangeWeightRoot(mean_difference[i] / (own[i] + floor), kInverseRange);
+    const float w = root * root * (kMaxWeight * kRangeWeightScale);
     const float level = own[i] + w * difference[i];
     own[i] = std::min(std::max(level, 0.0F), highest);
   }

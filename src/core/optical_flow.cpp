@@ -1,15 +1,14 @@
 #include "fast_edi/core/optical_flow.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "vector_clones.hpp"
 
 namespace fast_edi {
 namespace {
 
-// Chosen by the PSNR of high-rate videos of simulated sequences; half or twice as much of the first
-// two changes it by 0.2 dB.
+// Chosen by the PSNR of high-rate videos of simulated sequences; radii of 4 to 6 and lambdas of 8
+// to 50 differ by 0.3 dB at most.
 /// Of the box filter that is applied twice: standard deviation 4.5 px.
 constexpr int kRadius = 5;
 /// Holds displacements where gradients are weak [DN^2 / px^2].

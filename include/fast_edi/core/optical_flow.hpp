@@ -9,7 +9,7 @@
 /// linearised about the displacements u_before of the coarser level. The window w is a box filter
 /// applied twice, so that pixels with texture speak for their neighbours without; where there is
 /// none at all, u_before stays. Gradients are those of the mean of both images. The finest level
-/// has half the image's resolution: finer ones cost four times as much and bring nothing but noise.
+/// has half the image's resolution: the full one costs four times as much and was no better.
 /// It is the mean of 2 x 2 pixels, so that a Bayer mosaic does not show.
 ///
 /// Made for displacements of up to a tenth of the image and for fields that vary little within
