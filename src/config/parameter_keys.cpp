@@ -179,10 +179,12 @@ std::vector<ConfigKey> filterKeys() {
               [](bool value, ParameterDraft& draft) {
                 draft.loaded.deblur.filter.frame_noise = value;
               }),
-      boolKey({"filter_motion", "", boolText(defaults.motion),
-               "steady the images of `latent/image_raw` by that of the middle of the exposure, "
-               "along the motion"},
-              [](bool value, ParameterDraft& draft) { draft.loaded.deblur.filter.motion = value; }),
+      boolKey(
+          {"filter_motion", "", boolText(defaults.motion),
+           "steady images that show another instant than the middle of the exposure by that of "
+           "the middle, along the motion: those of `latent/image_raw`, and the deblurred frames "
+           "when `reference` is another"},
+          [](bool value, ParameterDraft& draft) { draft.loaded.deblur.filter.motion = value; }),
       boolKey(
           {"refine_contrast", "", boolText(DeblurParameters{}.refine_contrast),
            "learn the contrast thresholds from consecutive frames, within 30 % of those given"},

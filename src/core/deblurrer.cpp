@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
 #include <deque>
 #include <optional>
 #include <utility>
@@ -14,8 +13,11 @@
 #include "fast_edi/core/exposure_window.hpp"
 #include "fast_edi/core/latent_image.hpp"
 #include "fast_edi/core/latent_video.hpp"
+#include "fast_edi/core/middle_image.hpp"
+#include "fast_edi/core/motion_compensation.hpp"
 #include "fast_edi/core/online_calibration.hpp"
 #include "fast_edi/core/stamp_limits.hpp"
+#include "fast_edi/core/stored_image.hpp"
 #include "fast_edi/core/window_predictor.hpp"
 
 namespace fast_edi {
@@ -40,17 +42,6 @@ bool learnAlike(const DeblurParameters& a, const DeblurParameters& b) {
          a.exposure_source == b.exposure_source && a.exposure_time_ns == b.exposure_time_ns &&
          a.filter.enabled == b.filter.enabled && a.refine_contrast == b.refine_contrast &&
          a.refine_delay == b.refine_delay;
-}
-
-void copyImage(const ImageView& in, const MutableImageView& out) {
-  if (in.data == nullptr || out.data == nullptr) {
-    return;  // an unsupported frame: its pixels are the sink's own matter
-  }
-  const std::size_t row_bytes =
-      static_cast<std::size_t>(in.size.width) * static_cast<std::size_t>(bytesPerPixel(in.format));
-  for (int y = 0; y < in.size.height; ++y) {
-    std::memcpy(out.row(y), in.row(y), row_bytes);
-  }
 }
 
 struct WaitingFrame {
@@ -88,7 +79,8 @@ class Deblurrer::Impl {
         events_(limitsOf(parameters), counters_,
                 [this](StreamBreak kind, std::int64_t next_ns) { beforeBreak(kind, next_ns); }),
         latent_image_(parameters.filter),
-        video_(sink, latent_image_) {}
+        middle_(latent_image_),
+        video_(sink, latent_image_, compensation_) {}
 
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                  std::int64_t now_ns);
@@ -120,6 +112,8 @@ class Deblurrer::Impl {
   void forgetBefore(std::int64_t t_ns);
   void beforeBreak(StreamBreak kind, std::int64_t next_event_ns);
   void deblur(OutputFrame& output, const ExposureInterval& window);
+  ImageView steadied(const OutputFrame& output, const ExposureInterval& window,
+                     const MutableImageView& image);
   void passThrough(OutputFrame& output, PassReason reason);
   bool isLaterThanLastOutput(const WaitingFrame& frame, std::int64_t stamp_ns);
 
@@ -163,6 +157,8 @@ class Deblurrer::Impl {
   std::uint64_t calibration_generation_ = 0;      ///< of the lists that it learned from
   std::vector<float> unfiltered_gain_;            ///< for it
   LatentImage latent_image_;
+  MiddleImage middle_;
+  MotionCompensation compensation_;
   LatentVideo video_;
   std::optional<Expectation> expectation_;
 };
@@ -284,7 +280,8 @@ DeblurStatus Deblurrer::Impl::status() const {
   status.events_seen = events_.seen();
   status.sensor_size = frame_size_;
   status.buffer_bytes = events_.memoryBytes() + gain_.capacity() * sizeof(float) +
-                        video_.memoryBytes() + (integral_ ? integral_->memoryBytes() : 0) +
+                        video_.memoryBytes() + middle_.memoryBytes() + compensation_.memoryBytes() +
+                        (integral_ ? integral_->memoryBytes() : 0) +
                         (calibration_ ? calibration_->memoryBytes() : 0);
   if (events_.lists() != nullptr) {
     status.buffered_events = events_.lists()->eventCount();
@@ -458,8 +455,18 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
   if (calibrates) {
     unfiltered_gain_ = gain_;
   }
+  const bool steadies = parameters_.filter.enabled && parameters_.filter.motion;
+  if (steadies && parameters_.reference != ExposureInstant::kMid) {
+    middle_.take(gain_, reference_ns, parameters_.thresholds);
+  }
   const MutableImageView out = sink_.begin(output.input);
   latent_image_.write(output.input.image, gain_.data(), parameters_.response, out);
+  if (steadies) {
+    const ImageView middle = steadied(output, window, out);
+    if (wants_video) {
+      video_.setMiddle(middle);
+    }
+  }
 
   ++counters_.frames_deblurred;
   counters_.frames_still += report.events == 0 ? 1 : 0;
@@ -479,12 +486,31 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
   }
 }
 
+/// Steadies the latent image at the reference by that of mid-exposure, unless it is that.
+/// \return the one of mid-exposure, valid until the next call
+/// \pre unless the reference is mid-exposure: middle_ has taken this frame
+ImageView Deblurrer::Impl::steadied(const OutputFrame& output, const ExposureInterval& window,
+                                    const MutableImageView& image) {
+  if (parameters_.reference == ExposureInstant::kMid) {
+    return {image.data, image.size, image.step, image.format};
+  }
+  const ImageView middle = middle_.show(output.input.image, *events_.lists(),
+                                        window.at(ExposureInstant::kMid), parameters_.response);
+  compensation_.setReference(middle);
+  compensation_.apply(image);
+  return middle;
+}
+
 void Deblurrer::Impl::passThrough(OutputFrame& output, PassReason reason) {
   video_.breakOff();
   if (calibration_) {
     calibration_->interrupt();
   }
-  copyImage(output.input.image, sink_.begin(output.input));
+  const ImageView& blurry = output.input.image;
+  const MutableImageView out = sink_.begin(output.input);
+  if (blurry.data != nullptr && out.data != nullptr) {  // else its pixels are the sink's own matter
+    copyPixels(blurry, out);
+  }
   ++counters_.frames_passed[static_cast<std::size_t>(reason)];
   output.pass_reason = reason;
   sink_.finish(output);

@@ -7,16 +7,6 @@
 #include "fast_edi/core/stamp_limits.hpp"
 
 namespace fast_edi {
-namespace {
-
-/// How rows lie in Source::middle.
-std::size_t middleStep(const ImageView& image) {
-  return static_cast<std::size_t>(image.size.width) *
-         static_cast<std::size_t>(bytesPerPixel(image.format));
-}
-
-}  // namespace
-
 void LatentVideo::take(const OutputFrame& output, std::uint64_t epoch,
                        const std::vector<float>& gain, std::int64_t reference_ns,
                        const DeblurParameters& parameters) {
@@ -33,6 +23,7 @@ void LatentVideo::take(const OutputFrame& output, std::uint64_t epoch,
   current_.exposure = output.exposure;
   current_.offset_ns = parameters.time_offset_ns;
   current_.epoch = epoch;
+  current_.middle.clear();
   current_.gains.start(gain.data(), gain.size(), reference_ns, parameters.thresholds);
   has_current_ = true;
   gain_.resize(gain.size());
@@ -47,46 +38,15 @@ void LatentVideo::breakOff() {
 
 std::size_t LatentVideo::memoryBytes() const {
   return current_.gains.memoryBytes() + last_.gains.memoryBytes() +
-         gain_.capacity() * sizeof(float) + current_.middle.capacity() + last_.middle.capacity() +
-         (compensation_ ? compensation_->memoryBytes() : 0);
+         gain_.capacity() * sizeof(float) + current_.middle.memoryBytes() +
+         last_.middle.memoryBytes();
 }
 
 std::size_t LatentVideo::write(const EventStream& events, const DeblurParameters& parameters) {
   current_.generation = events.generation();
-  showMiddle(events, parameters);
   const std::size_t between = has_last_ ? bridgeGap(events, parameters) : 0;
   return between +
          show(current_, instantsWithin(current_.exposure, parameters.latent), events, parameters);
-}
-
-/// What the other images of this exposure are steadied by.
-void LatentVideo::showMiddle(const EventStream& events, const DeblurParameters& parameters) {
-  current_.middle.clear();
-  if (!parameters.filter.enabled || !parameters.filter.motion) {
-    return;
-  }
-  const ImageView& blurry = current_.input.image;
-  const std::size_t step = middleStep(blurry);
-  current_.middle.resize(step * static_cast<std::size_t>(blurry.size.height));
-  current_.gains.at(*events.lists(),
-                    current_.exposure.at(ExposureInstant::kMid) + current_.offset_ns, gain_.data());
-  latent_image_.write(blurry, gain_.data(), parameters.response,
-                      {current_.middle.data(), blurry.size, step, blurry.format});
-}
-
-/// \return ready to steady images of this frame; nullptr when there is nothing to do it by
-MotionCompensation* LatentVideo::compensationFor(const Source& source) {
-  if (source.middle.empty()) {
-    return nullptr;
-  }
-  const ImageView& blurry = source.input.image;
-  if (!compensation_ || compensation_->size() != blurry.size ||
-      compensation_->format() != blurry.format) {
-    compensation_ = std::make_unique<MotionCompensation>(blurry.size, blurry.format);
-  }
-  compensation_->setReference(
-      {source.middle.data(), blurry.size, middleStep(blurry), blurry.format});
-  return compensation_.get();
 }
 
 std::size_t LatentVideo::bridgeGap(const EventStream& events, const DeblurParameters& parameters) {
@@ -115,7 +75,10 @@ std::size_t LatentVideo::bridgeGap(const EventStream& events, const DeblurParame
 std::size_t LatentVideo::show(Source& source, const std::vector<std::int64_t>& instants,
                               const EventStream& events, const DeblurParameters& parameters) {
   std::size_t images = 0;
-  MotionCompensation* compensation = instants.empty() ? nullptr : compensationFor(source);
+  const bool steadies = !instants.empty() && !source.middle.empty();
+  if (steadies) {
+    compensation_.setReference(source.middle.view());
+  }
   for (const std::int64_t t_ns : instants) {
     // Exposures that overlap: the frame before has shown this time already.
     const bool shown = last_stamp_ns_ && t_ns <= *last_stamp_ns_;
@@ -125,8 +88,8 @@ std::size_t LatentVideo::show(Source& source, const std::vector<std::int64_t>& i
     source.gains.at(*events.lists(), t_ns + source.offset_ns, gain_.data());
     const MutableImageView out = sink_.beginLatent(source.input);
     latent_image_.write(source.input.image, gain_.data(), parameters.response, out);
-    if (compensation != nullptr) {
-      compensation->apply(out);
+    if (steadies) {
+      compensation_.apply(out);
     }
     sink_.finishLatent(source.input, t_ns);
     last_stamp_ns_ = t_ns;

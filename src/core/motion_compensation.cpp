@@ -90,18 +90,7 @@ struct MotionCompensation::Taps {
   }
 };
 
-MotionCompensation::MotionCompensation(SensorSize size, PixelFormat format)
-    : size_(size),
-      format_(format),
-      stride_px_(format == PixelFormat::kBayer8 ? 2 : 1),
-      dn_(format == PixelFormat::kMono16 ? static_cast<float>(kDn16PerDn8) : 1.0F),
-      flow_(size),
-      reference_(static_cast<std::size_t>(channels(format))),
-      own_(reference_.size()) {
-  for (std::size_t channel = 0; channel < reference_.size(); ++channel) {
-    reference_[channel].resize(size.pixelCount());
-    own_[channel].resize(size.pixelCount());
-  }
+MotionCompensation::MotionCompensation() {
   for (int i = 0; i < kFractions; ++i) {
     // Catmull-Rom.
     const float t = static_cast<float>(i) / kFractions;
@@ -110,25 +99,40 @@ MotionCompensation::MotionCompensation(SensorSize size, PixelFormat format)
     cubic_.push_back({0.5F * (-t3 + 2.0F * t2 - t), 0.5F * (3.0F * t3 - 5.0F * t2 + 2.0F),
                       0.5F * (-3.0F * t3 + 4.0F * t2 + t), 0.5F * (t3 - t2)});
   }
-  grey_.resize(size.pixelCount());
-  difference_.resize(size.pixelCount());
-  mean_difference_.resize(size.pixelCount());
+}
+
+void MotionCompensation::fit(SensorSize size, PixelFormat format) {
+  if (flow_ && size_ == size && format_ == format) {
+    return;
+  }
+  size_ = size;
+  format_ = format;
+  stride_px_ = format == PixelFormat::kBayer8 ? 2 : 1;
+  dn_ = format == PixelFormat::kMono16 ? static_cast<float>(kDn16PerDn8) : 1.0F;
+  flow_.emplace(size);
+  const std::vector<float> plane(size.pixelCount());
+  reference_.assign(static_cast<std::size_t>(channels(format)), plane);
+  own_ = reference_;
+  grey_ = plane;
+  difference_ = plane;
+  mean_difference_ = plane;
   row_sums_.resize(static_cast<std::size_t>(size.width));
 }
 
 std::size_t MotionCompensation::memoryBytes() const {
-  const std::size_t planes = 2 * reference_.size() + 3;
-  return planes * size_.pixelCount() * sizeof(float) + flow_.memoryBytes();
+  const std::size_t planes = flow_ ? 2 * reference_.size() + 3 : 0;
+  return planes * size_.pixelCount() * sizeof(float) + (flow_ ? flow_->memoryBytes() : 0);
 }
 
 void MotionCompensation::setReference(const ImageView& middle) {
+  fit(middle.size, middle.format);
   loadPlanes(middle, reference_);
-  flow_.setTarget(grey_.data());
+  flow_->setTarget(grey_.data());
 }
 
 void MotionCompensation::apply(const MutableImageView& image) {
   loadPlanes({image.data, image.size, image.step, image.format}, own_);
-  const std::vector<Displacement>& flow = flow_.from(grey_.data());
+  const std::vector<Displacement>& flow = flow_->from(grey_.data());
   for (std::size_t channel = 0; channel < own_.size(); ++channel) {
     warp(reference_[channel], flow, own_[channel]);
     averageDifferences();

@@ -1,4 +1,5 @@
-/// The high-rate video: what an image of it costs, over images and events per exposure.
+/// The high-rate video: what an image of it costs, over images and events per exposure. And what it
+/// costs that a frame shows another instant than the middle of its exposure.
 
 #include <cstdint>
 #include <string>
@@ -71,10 +72,10 @@ DeblurParameters parametersOf(Filters filters, int images) {
 }
 
 /// Time of whole frames, events taken in, deblurred frame and video.
-void measure(benchmark::State& state, Filters filters, std::size_t events, int images) {
+void measure(benchmark::State& state, const DeblurParameters& parameters, std::size_t events) {
   PeriodicStream& stream = sharedStream({testing::EventScene::kMovingEdges, kSize, events});
   VideoSink sink;
-  Deblurrer deblurrer(parametersOf(filters, images), sink);
+  Deblurrer deblurrer(parameters, sink);
   const std::vector<std::uint8_t> blurry = testing::makeGreyImage(kSize, kImageSeed);
   std::uint32_t sequence = 0;
   const auto play = [&] {
@@ -104,14 +105,29 @@ void measure(benchmark::State& state, Filters filters, std::size_t events, int i
   }
 }
 
-void addAll() {
+void addReferences() {
+  constexpr std::size_t kEvents = 400'000;
+  for (const ExposureInstant reference : {ExposureInstant::kMid, ExposureInstant::kEnd}) {
+    DeblurParameters parameters = parametersOf(Filters::kAll, 0);
+    parameters.reference = reference;
+    const char* name = reference == ExposureInstant::kMid ? "reference/mid" : "reference/end";
+    benchmark::RegisterBenchmark(
+        name, [=](benchmark::State& state) { measure(state, parameters, kEvents); })
+        ->UseManualTime()
+        ->Iterations(kMeasuredFrames)
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
+void addVideos() {
   for (const std::size_t events : {400'000, 4'000'000}) {
     for (const Filters filters : {Filters::kPlain, Filters::kWithoutMotion, Filters::kAll}) {
       for (const int images : {0, 8, 32}) {
         const std::string name = std::string("video/") + toString(filters) + "/" +
                                  std::to_string(events) + "/" + std::to_string(images);
         benchmark::RegisterBenchmark(
-            name.c_str(), [=](benchmark::State& state) { measure(state, filters, events, images); })
+            name.c_str(),
+            [=](benchmark::State& state) { measure(state, parametersOf(filters, images), events); })
             ->UseManualTime()
             ->Iterations(kMeasuredFrames)
             ->Unit(benchmark::kMillisecond);
@@ -124,6 +140,7 @@ void addAll() {
 }  // namespace fast_edi::benchmarks
 
 int main(int argc, char** argv) {
-  fast_edi::benchmarks::addAll();
+  fast_edi::benchmarks::addVideos();
+  fast_edi::benchmarks::addReferences();
   return runBenchmarks(argc, argv);
 }

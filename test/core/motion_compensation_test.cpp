@@ -84,7 +84,7 @@ double error(const std::vector<float>& plane, const std::vector<float>& truth) {
 }
 
 Image compensated(const Image& reference, Image image) {
-  MotionCompensation compensation(kSize, image.format);
+  MotionCompensation compensation;
   compensation.setReference(reference.view());
   compensation.apply(image.mutableView());
   return image;
@@ -195,7 +195,7 @@ TEST(MotionCompensation, TakesSmallImages) {
   for (const SensorSize size : {SensorSize{1, 1}, {2, 1}, {3, 5}}) {
     std::vector<std::uint8_t> reference(size.pixelCount(), 100);
     std::vector<std::uint8_t> image(size.pixelCount(), 104);
-    MotionCompensation compensation(size, PixelFormat::kBayer8);
+    MotionCompensation compensation;
     const auto step = static_cast<std::size_t>(size.width);
     compensation.setReference({reference.data(), size, step, PixelFormat::kBayer8});
     compensation.apply({image.data(), size, step, PixelFormat::kBayer8});

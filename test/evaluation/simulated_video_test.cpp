@@ -28,12 +28,15 @@ constexpr double kAllowedLoss_db = 3.0;
 
 class SimulatedVideo : public ::testing::Test {
  protected:
-  void film(const SimulationSettings& settings) {
+  void film(const SimulationSettings& settings, ExposureInstant reference = ExposureInstant::kMid,
+            bool motion = true) {
     simulator_ = std::make_unique<DavisSimulator>(settings);
     sequence_ = simulateSequence(settings);
     sink_.wants_latent_images = true;
     DeblurParameters parameters = testing::parametersFor(settings);
     parameters.latent.per_exposure = kImages;
+    parameters.reference = reference;
+    parameters.filter.motion = motion;
     Deblurrer deblurrer(parameters, sink_);
     deblurrer.addEvents(testing::wireView(testing::toWire(sequence_.events)), kSize, 1, 0);
     for (const SimulatedFrame& frame : sequence_.frames) {
@@ -44,10 +47,20 @@ class SimulatedVideo : public ::testing::Test {
     deblurrer.finish();
   }
 
-  double psnrAtItsInstant(const testing::RecordedLatent& image) const {
+  double psnrAt(std::int64_t t_ns, const std::vector<std::uint8_t>& pixels) const {
     const cv::Mat shown(kSize.height, kSize.width, CV_8UC1,
-                        const_cast<std::uint8_t*>(image.pixels.data()));
-    return psnr(shown, simulator_->latentAt(image.stamp_ns));
+                        const_cast<std::uint8_t*>(pixels.data()));
+    return psnr(shown, simulator_->latentAt(t_ns));
+  }
+  double psnrAtItsInstant(const testing::RecordedLatent& image) const {
+    return psnrAt(image.stamp_ns, image.pixels);
+  }
+  double meanOfFrames() const {
+    double sum_db = 0.0;
+    for (const auto& output : sink_.outputs) {
+      sum_db += psnrAt(output.frame.stamp_ns, output.pixels);
+    }
+    return sum_db / static_cast<double>(sink_.outputs.size());
   }
 
   /// The images within frame \p i's exposure.
@@ -118,6 +131,19 @@ TEST_F(SimulatedVideo, BridgesGapsBetterThanHoldingTheFrame) {
   }
   // 10 ms of each 40 ms, as densely as within the exposures of 30 ms.
   EXPECT_EQ(bridged, 5u * 4u);
+}
+
+TEST_F(SimulatedVideo, FramesThatShowAnEndOfTheExposureAreSteadiedByItsMiddle) {
+  for (const ExposureInstant reference : {ExposureInstant::kStart, ExposureInstant::kEnd}) {
+    double mean_db[2] = {};
+    for (const bool motion : {false, true}) {
+      sink_.outputs.clear();
+      film(shakenPoster(SensorSettings{}), reference, motion);
+      ASSERT_EQ(sink_.outputs.size(), sequence_.frames.size());
+      mean_db[motion ? 1 : 0] = meanOfFrames();
+    }
+    EXPECT_GT(mean_db[1], mean_db[0] + 1.0);
+  }
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ struct FilterParameters {
   GainFilter::Settings gain;
   bool frame_noise = true;      ///< take out the frame's own noise, too
   double frame_noise_dn = 1.5;  ///< its standard deviation [8-bit DN], > 0
-  bool motion = true;           ///< steady the images of the high-rate video along the motion
+  bool motion = true;           ///< steady images of other instants by that of mid-exposure
 };
 
 /// \throws std::invalid_argument naming the parameter, its value and what was expected

@@ -11,13 +11,11 @@
 /// none in a gap of more than kMaxGap_ns: what events say grows less certain with time.
 ///
 /// Complexity. O(events from one exposure's end to the next, at most four times, + images *
-/// pixels) for each frame. Memory once used: 20 B per pixel, and some 60 more for grey images with
-/// MotionCompensation.
+/// pixels) for each frame. Memory once used: 20 B per pixel and two images.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -27,6 +25,7 @@
 #include "fast_edi/core/latent_image.hpp"
 #include "fast_edi/core/motion_compensation.hpp"
 #include "fast_edi/core/parameters.hpp"
+#include "fast_edi/core/stored_image.hpp"
 #include "fast_edi/core/types.hpp"
 
 namespace fast_edi {
@@ -35,9 +34,9 @@ class LatentVideo {
  public:
   static constexpr std::int64_t kMaxGap_ns = kNanosecondsPerSecond;
 
-  /// \param sink, latent_image must outlive this object
-  LatentVideo(FrameSink& sink, LatentImage& latent_image)
-      : sink_(sink), latent_image_(latent_image) {}
+  /// \param sink, latent_image, compensation must outlive this object
+  LatentVideo(FrameSink& sink, LatentImage& latent_image, MotionCompensation& compensation)
+      : sink_(sink), latent_image_(latent_image), compensation_(compensation) {}
 
   /// A frame was integrated: keeps its gains, before any filter touches them.
   /// \param output with input and exposure (in frame time)
@@ -46,6 +45,11 @@ class LatentVideo {
   /// \param parameters with the thresholds and the time offset of that integral
   void take(const OutputFrame& output, std::uint64_t epoch, const std::vector<float>& gain,
             std::int64_t reference_ns, const DeblurParameters& parameters);
+
+  /// What the images of this frame are steadied by; without it, none is.
+  /// \param middle its latent image at mid-exposure; copied
+  /// \pre take() was called for this frame
+  void setMiddle(const ImageView& middle) { current_.middle.assign(middle); }
 
   /// Writes the images between the frame before and the one taken, then those within its exposure.
   /// \pre take() was called for this frame; the events of its exposure are complete
@@ -66,17 +70,16 @@ class LatentVideo {
     std::uint64_t epoch = 0;       ///< of the frames' clock
     std::uint64_t generation = 0;  ///< of the event lists
     LatentGains gains;
-    std::vector<std::uint8_t> middle;  ///< latent image at mid-exposure; empty: none
+    StoredImage middle;  ///< latent image at mid-exposure; empty: none
   };
 
-  void showMiddle(const EventStream& events, const DeblurParameters& parameters);
-  MotionCompensation* compensationFor(const Source& source);
   std::size_t bridgeGap(const EventStream& events, const DeblurParameters& parameters);
   std::size_t show(Source& source, const std::vector<std::int64_t>& instants,
                    const EventStream& events, const DeblurParameters& parameters);
 
   FrameSink& sink_;
   LatentImage& latent_image_;
+  MotionCompensation& compensation_;
   Source current_;
   Source last_;
   bool has_last_ = false;
@@ -84,7 +87,6 @@ class LatentVideo {
   std::uint64_t stamp_epoch_ = 0;
   std::optional<std::int64_t> last_stamp_ns_;  ///< of the images written in that epoch
   std::vector<float> gain_;
-  std::unique_ptr<MotionCompensation> compensation_;
 };
 
 }  // namespace fast_edi

@@ -17,6 +17,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "fast_edi/core/image.hpp"
@@ -26,16 +27,14 @@ namespace fast_edi {
 
 class MotionCompensation {
  public:
-  MotionCompensation(SensorSize size, PixelFormat format);
+  MotionCompensation();
 
-  SensorSize size() const { return size_; }
-  PixelFormat format() const { return format_; }
-
-  /// \param middle latent image at mid-exposure, of the size and format given at construction;
-  /// copied
+  /// \param middle latent image at mid-exposure, of any size and format; copied. Memory stays while
+  /// these do.
   void setReference(const ImageView& middle);
 
-  /// \param image latent image at another instant, of the same size and format; changed in place
+  /// \param image latent image at another instant, of the reference's size and format; changed in
+  /// place
   /// \pre setReference() was called
   void apply(const MutableImageView& image);
 
@@ -48,6 +47,7 @@ class MotionCompensation {
   struct Lattice;
   struct Taps;
 
+  void fit(SensorSize size, PixelFormat format);
   void loadPlanes(const ImageView& image, std::vector<std::vector<float>>& planes);
   void warp(const std::vector<float>& reference, const std::vector<Displacement>& flow,
             const std::vector<float>& own);
@@ -56,10 +56,10 @@ class MotionCompensation {
   void averageDifferences();
 
   SensorSize size_;
-  PixelFormat format_;
-  int stride_px_;  ///< distance of pixels of one colour
-  float dn_;       ///< levels of the format in an 8-bit DN
-  OpticalFlow flow_;
+  PixelFormat format_ = PixelFormat::kMono8;
+  int stride_px_ = 1;                          ///< distance of pixels of one colour
+  float dn_ = 1.0F;                            ///< levels of the format in an 8-bit DN
+  std::optional<OpticalFlow> flow_;            ///< none before the first reference
   std::vector<std::vector<float>> reference_;  ///< a plane for each channel
   std::vector<std::vector<float>> own_;        ///< a plane for each channel
   std::vector<float> grey_;                    ///< mean of the channels [8-bit DN]
