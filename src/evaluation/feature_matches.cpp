@@ -90,8 +90,10 @@ bool needsDlib(FeatureMethod method) {
   return method == FeatureMethod::kSurf || method == FeatureMethod::kMserSurf;
 }
 
-ImageFeatures findFeatures(const cv::Mat& image, FeatureMethod method) {
-  requireMono8(image, "feature detection");
+ImageFeatures findFeatures(const cv::Mat& whole_or_part, FeatureMethod method) {
+  requireMono8(whole_or_part, "feature detection");
+  // OpenCV's BRISK takes other pixels for neighbours in an image with padding behind its rows.
+  const cv::Mat image = whole_or_part.isContinuous() ? whole_or_part : whole_or_part.clone();
   switch (method) {
     case FeatureMethod::kSurf:
       return findSurf(image);
@@ -135,8 +137,10 @@ MatchCounts matchFeatures(const ImageFeatures& first, const ImageFeatures& secon
     return counts;
   }
   cv::Mat inliers;
-  cv::findFundamentalMat(from, to, cv::FM_RANSAC, kInlierDistancePx, kConfidence, inliers);
-  counts.inliers = inliers.empty() ? 0 : cv::countNonZero(inliers);
+  const cv::Mat model =
+      cv::findFundamentalMat(from, to, cv::FM_RANSAC, kInlierDistancePx, kConfidence, inliers);
+  // Without a model (matches of too few places) OpenCV leaves the mask uninitialised.
+  counts.inliers = model.empty() ? 0 : cv::countNonZero(inliers);
   return counts;
 }
 

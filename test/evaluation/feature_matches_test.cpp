@@ -43,6 +43,20 @@ TEST_P(FeatureMethodTest, MatchesTwoViewsAndRepeatsItself) {
   EXPECT_EQ(again.inliers, counts.inliers);
 }
 
+TEST_P(FeatureMethodTest, TakesPartOfALargerImage) {
+  if (!canRun(GetParam())) {
+    EXPECT_THROW(findFeatures(firstView(), GetParam()), UnavailableError);
+    return;
+  }
+  const cv::Mat whole = firstView();
+  const cv::Mat part = whole(cv::Rect(10, 20, 200, 180));
+  const ImageFeatures of_part = findFeatures(part, GetParam());
+  const ImageFeatures of_copy = findFeatures(part.clone(), GetParam());
+  ASSERT_FALSE(of_copy.points.empty());
+  EXPECT_EQ(of_part.points, of_copy.points);
+  EXPECT_EQ(cv::norm(of_part.descriptors, of_copy.descriptors, cv::NORM_INF), 0.0);
+}
+
 TEST_P(FeatureMethodTest, BlurCostsInliers) {
   if (!canRun(GetParam())) {
     EXPECT_THROW(findFeatures(firstView(), GetParam()), UnavailableError);
@@ -83,6 +97,34 @@ TEST(MatchFeaturesTest, TooFewMatchesGiveNoInliers) {
   const MatchCounts counts = matchFeatures(few, few);
   EXPECT_EQ(counts.matches, 5);
   EXPECT_EQ(counts.inliers, 0);
+}
+
+TEST(MatchFeaturesTest, MatchesOfTooFewPlacesGiveNoModelAndNoInliers) {
+  // Three places with a match or two each, and all the others about a fourth.
+  ImageFeatures first;
+  ImageFeatures second;
+  const auto addMatch = [&](cv::Point2f from, cv::Point2f to) {
+    cv::Mat1f descriptor(1, 64, 0.0F);
+    descriptor(0, static_cast<int>(first.points.size())) = 1.0F;
+    first.points.push_back(from);
+    second.points.push_back(to);
+    first.descriptors.push_back(descriptor);
+    second.descriptors.push_back(descriptor);
+  };
+  for (int i = 0; i < 17; ++i) {
+    addMatch({246.8F + 0.1F * static_cast<float>(i % 2), 75.8F + 0.1F * static_cast<float>(i % 4)},
+             {241.4F, 70.3F});
+  }
+  addMatch({125.6F, 79.5F}, {119.8F, 70.3F});
+  addMatch({246.6F, 75.8F}, {241.2F, 69.8F});
+  addMatch({32.5F, 196.0F}, {26.5F, 185.7F});
+  addMatch({32.5F, 196.2F}, {26.5F, 185.7F});
+  for (int repetition = 0; repetition < 4; ++repetition) {
+    { const cv::Mat leaves_ones_on_the_heap(1, 21, CV_8UC1, cv::Scalar(1)); }
+    const MatchCounts counts = matchFeatures(first, second);
+    EXPECT_EQ(counts.matches, 21);
+    EXPECT_EQ(counts.inliers, 0);
+  }
 }
 
 }  // namespace
