@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "driver_keys.hpp"
+#include "fast_edi/core/temporal_fusion.hpp"
 
 namespace fast_edi {
 namespace {
@@ -21,6 +22,7 @@ constexpr NumberRange kOffsetDn{0.0, 255.0};
 constexpr NumberRange kFilterRange{0.0, 10.0, true};
 constexpr NumberRange kFilterSigmaPx{0.0, 10.0, true};
 constexpr NumberRange kFilterRestore{0.0, static_cast<double>(GainRestoration::kMaxStrength)};
+constexpr NumberRange kFilterTemporal{0.0, TemporalFusion::kMaxWeight};
 constexpr NumberRange kFrameNoiseDn{0.0, 50.0, true};
 
 using TimeMember = std::int64_t DeblurParameters::*;
@@ -185,6 +187,12 @@ std::vector<ConfigKey> filterKeys() {
            "the middle, along the motion: those of `latent/image_raw`, and the deblurred frames "
            "when `reference` is another"},
           [](bool value, ParameterDraft& draft) { draft.loaded.deblur.filter.motion = value; }),
+      numberKey(
+          {"filter_temporal", "", numberText(defaults.temporal),
+           "weight of the deblurred frame before, carried on by the events between, in each "
+           "deblurred frame; 0 = off"},
+          kFilterTemporal,
+          [](double value, ParameterDraft& draft) { draft.loaded.deblur.filter.temporal = value; }),
       boolKey(
           {"refine_contrast", "", boolText(DeblurParameters{}.refine_contrast),
            "learn the contrast thresholds from consecutive frames, within 30 % of those given"},

@@ -18,6 +18,7 @@
 #include "fast_edi/core/online_calibration.hpp"
 #include "fast_edi/core/stamp_limits.hpp"
 #include "fast_edi/core/stored_image.hpp"
+#include "fast_edi/core/temporal_fusion.hpp"
 #include "fast_edi/core/window_predictor.hpp"
 
 namespace fast_edi {
@@ -160,6 +161,7 @@ class Deblurrer::Impl {
   MiddleImage middle_;
   MotionCompensation compensation_;
   LatentVideo video_;
+  TemporalFusion fusion_;
   std::optional<Expectation> expectation_;
 };
 
@@ -237,6 +239,7 @@ void Deblurrer::Impl::pause() {
   pairing_.restart();
   expectation_.reset();
   video_.breakOff();
+  fusion_.forget();
   beginFrameEpoch(false);
 }
 
@@ -271,6 +274,7 @@ void Deblurrer::Impl::setParameters(const DeblurParameters& parameters) {
   }
   latent_image_.setParameters(parameters_.filter);
   video_.breakOff();
+  fusion_.forget();
   expectNext();
 }
 
@@ -467,6 +471,10 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
       video_.setMiddle(middle);
     }
   }
+  if (parameters_.filter.enabled && parameters_.filter.temporal > 0.0) {
+    fusion_.apply({reference_ns, window.length(), output_epoch_}, events_, parameters_.thresholds,
+                  parameters_.response, parameters_.filter.temporal, out);
+  }
 
   ++counters_.frames_deblurred;
   counters_.frames_still += report.events == 0 ? 1 : 0;
@@ -503,6 +511,7 @@ ImageView Deblurrer::Impl::steadied(const OutputFrame& output, const ExposureInt
 
 void Deblurrer::Impl::passThrough(OutputFrame& output, PassReason reason) {
   video_.breakOff();
+  fusion_.forget();
   if (calibration_) {
     calibration_->interrupt();
   }

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "fast_edi/core/temporal_fusion.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -25,6 +27,10 @@ void validate(const FilterParameters& parameters) {
                                 ", expected 0 to " + std::to_string(GainRestoration::kMaxStrength));
   }
   requirePositive("frame_noise_dn", parameters.frame_noise_dn);
+  if (!(parameters.temporal >= 0.0 && parameters.temporal <= TemporalFusion::kMaxWeight)) {
+    throw std::invalid_argument("filter_temporal is " + std::to_string(parameters.temporal) +
+                                ", expected 0 to " + std::to_string(TemporalFusion::kMaxWeight));
+  }
 }
 
 LatentImage::LatentImage(const FilterParameters& parameters) : parameters_(parameters) {}

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
@@ -94,6 +95,11 @@ TEST(LatentImage, RefusesParametersOutOfRange) {
   parameters = {};
   parameters.gain.spatial_sigma_px = 0.0F;
   EXPECT_THROW(validate(parameters), std::invalid_argument);
+  for (const double weight : {-0.1, 1.0, std::nan("")}) {
+    parameters = {};
+    parameters.temporal = weight;
+    EXPECT_THROW(validate(parameters), std::invalid_argument);
+  }
 }
 
 }  // namespace

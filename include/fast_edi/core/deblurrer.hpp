@@ -77,7 +77,7 @@ class Deblurrer {
   /// Takes over new parameters between two frames. Frames closed from now on, those that wait
   /// included, are those of a fresh object with the new parameters, bit for bit, as far as events
   /// are still there: a window moved back to before the last frame's start has lost its own. Two
-  /// things that have come before matter nevertheless:
+  /// things that have come before matter nevertheless (filter.temporal begins anew):
   /// - What was learned from the recording stays as long as what it was learned under does. It is
   ///   forgotten, and learning starts anew from the values given, when the thresholds, the time
   ///   offset, weighting, response, the place of exposures (stamp_reference, exposure_source,
