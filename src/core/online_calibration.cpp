@@ -17,7 +17,6 @@ namespace {
 constexpr int kLowestEvidence_dn = 16;
 constexpr int kHighestEvidence_dn = 239;
 constexpr std::size_t kLevels = 256;
-/// 16-bit DN for one 8-bit DN: 65535 / 255.
 
 /// Changes below this many events drown in the quantisation of events.
 constexpr float kLeastChange = 3.0F;

@@ -8,9 +8,8 @@
 ///     P = L1' exp(sum s) T2 / T1,    L2' = L2 + w (P - L2)
 ///
 /// Consecutive images then agree better with the events between them, which is what trackers go by
-/// that follow an image by its events, and the brightness of large areas is steadier. Each of them
-/// alone is farther from the truth: P has the noise of all the events of the way. Pixels that are
-/// saturated in either image stay as they are.
+/// that follow an image by its events. Each of them alone is farther from the truth: P has the
+/// noise of all the events of the way. Pixels that are saturated in either image stay as they are.
 ///
 /// Complexity. O(events between both references + pixels). Memory once used: 24 B per pixel and two
 /// images.
