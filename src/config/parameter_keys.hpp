@@ -1,5 +1,5 @@
 /// \file
-/// The one table of keys from which parsing, descriptions and README's table come.
+/// The one table of keys from which parsing, descriptions and the table of cfg/README.md come.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace fast_edi {
 
-/// Keys at the top level, in README's order.
+/// Keys at the top level, in the order of cfg/README.md.
 const std::vector<ConfigKey>& topLevelKeys();
 
 /// Keys of the map `biases`.

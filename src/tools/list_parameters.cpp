@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
     po::options_description options("Options");
     bool markdown = false;
     options.add_options()("help,h", "print this")("markdown", po::bool_switch(&markdown),
-                                                  "as the tables of README");
+                                                  "as the tables of the documents");
     po::variables_map values;
     po::store(po::parse_command_line(argc, argv, options), values);
     po::notify(values);

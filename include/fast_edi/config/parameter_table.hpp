@@ -1,5 +1,6 @@
 /// \file
-/// What there is to configure, for people: README's table and the tools' help come from here.
+/// What there is to configure, for people: the tables in the documents and the tools' help are made
+/// from it.
 #pragma once
 
 #include <optional>
@@ -27,7 +28,7 @@ struct ParameterDescription {
   bool live = false;
 };
 
-/// All keys at the top level, in README's order.
+/// All keys at the top level, in the order of cfg/README.md.
 std::vector<ParameterDescription> parameterDescriptions();
 
 /// All keys of the map `biases`.

@@ -61,7 +61,7 @@ LoadedParameters parametersFromFile(const std::string& path,
 /// \throws ParameterError for an argument without ":=" or whose value is not YAML
 void applyOverrides(YAML::Node& root, const std::vector<std::string>& overrides);
 
-/// All known top-level keys in the order of README's table.
+/// All known top-level keys in the order of cfg/README.md.
 const std::vector<std::string>& parameterKeys();
 
 }  // namespace fast_edi

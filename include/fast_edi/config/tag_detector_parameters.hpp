@@ -26,7 +26,7 @@ struct TagDetectorParameters {
 ///         wrong types and values out of range
 TagDetectorParameters tagDetectorParametersFromYaml(const YAML::Node& root);
 
-/// All keys in README's order.
+/// All keys in the order of launch/apriltags.md.
 std::vector<ParameterDescription> tagDetectorDescriptions();
 
 }  // namespace fast_edi

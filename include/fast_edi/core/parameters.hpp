@@ -1,6 +1,6 @@
 /// \file
 /// Everything a user can set about deblurring, in the units of the core. Names, units and defaults
-/// of the user-facing keys are in parameters_from_yaml.hpp and README.
+/// of the user-facing keys are in parameters_from_yaml.hpp and cfg/README.md.
 #pragma once
 
 #include <cstddef>

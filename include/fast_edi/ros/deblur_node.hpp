@@ -1,6 +1,6 @@
 /// \file
 /// The ROS side of the pipeline, the same for node and nodelet: topics, parameters, clock and
-/// diagnostics around a Deblurrer. Topic names are relative; README lists them.
+/// diagnostics around a Deblurrer. Topic names are relative; src/ros/README.md lists them.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 /// \file
 /// AprilTags in a stream of images, the same for node and nodelet: topics, parameters and
-/// diagnostics around a TagDetector. Topic names are relative; README lists them.
+/// diagnostics around a TagDetector. Topic names are relative; launch/apriltags.md lists them.
 #pragma once
 
 #include <cstdint>

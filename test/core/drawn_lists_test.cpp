@@ -1,4 +1,4 @@
-/// The picture of the lists in README shows what the code computes.
+/// The picture of the lists in src/method.md shows what the code computes.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ std::string formatted(const char* format, Values... values) {
   return text;
 }
 
-TEST(ReadmeLists, ShowsThePairsOfTheList) {
+TEST(DrawnLists, ShowsThePairsOfTheList) {
   PixelEventLists lists(kSize, {});
   fill(lists);
   const std::vector<ListEntry> entries = lists.list(0, 0, kExposure, kThresholds);
@@ -71,7 +71,7 @@ TEST(ReadmeLists, ShowsThePairsOfTheList) {
   }
 }
 
-TEST(ReadmeLists, ShowsTheDoubleIntegral) {
+TEST(DrawnLists, ShowsTheDoubleIntegral) {
   PixelEventLists lists(kSize, {});
   fill(lists);
   const std::string shown = picture();
