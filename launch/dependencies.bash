@@ -137,7 +137,5 @@ fast_edi_source() {
 fast_edi_configure() {
   local build=$1
   shift
-  # Without this folder, the first configuration records an empty PYTHONPATH for the tests.
-  mkdir -p "$build/devel/lib/python3/dist-packages" &&
-    cmake -S "$(dirname "${BASH_SOURCE[0]}")/.." -B "$build" "$@"
+  cmake -S "$(dirname "${BASH_SOURCE[0]}")/.." -B "$build" "$@"
 }
