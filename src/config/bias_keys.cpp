@@ -46,7 +46,7 @@ std::vector<ConfigKey> biasKeys() {
   appendBias("OffBn", "OFFBn", &BiasConfiguration::off, "the OFF comparator's bias", keys);
   keys.push_back(choiceKey<CoarseConvention>(
       {"coarse_convention", "", "libcaer",
-       "how coarse and fine make a current: as in libcaer and the ROS driver, or as in jAER's XML "
+       "how coarse and fine values are read: as in libcaer and the ROS driver, or as in jAER's XML "
        "files, which store 7 - coarse"},
       {{"libcaer", CoarseConvention::kLibcaer}, {"jaer_xml", CoarseConvention::kJaerXml}},
       [](CoarseConvention value, ParameterDraft& draft) { draft.biases.convention = value; }));

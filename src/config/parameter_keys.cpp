@@ -82,8 +82,7 @@ ConfigKey thresholdKey(const std::string& name, double ContrastThresholds::*memb
                        const std::string& polarity) {
   return numberKey({name, "natural log", "from `biases`",
                     "contrast threshold of " + polarity +
-                        " events; overrides `biases`. Changed live, 0 stands "
-                        "for the one from `biases`"},
+                        " events; overrides `biases`. Set live to 0 to use the one from `biases`"},
                    kContrast, [member](double value, ParameterDraft& draft) {
                      draft.loaded.deblur.thresholds.*member = value;
                    });
@@ -93,8 +92,8 @@ ConfigKey weightingKey() {
   const Choices<Weighting> choices = {{"time", Weighting::kTime}, {"counter", Weighting::kCounter}};
   return choiceKey<Weighting>(
       {"weighting", "", wordFor(choices, DeblurParameters{}.weighting),
-       "how long a latent value counts: the elapsed time until the pixel's next event (exact), or "
-       "the number of events in the frame until then (Lin et al., ICRA 2023)"},
+       "weight of a latent value in the double integral: the time until the pixel's next event "
+       "(exact), or the number of events in the whole frame until then (Lin et al., ICRA 2023)"},
       choices,
       [](Weighting value, ParameterDraft& draft) { draft.loaded.deblur.weighting = value; });
 }
@@ -104,7 +103,7 @@ ConfigKey exposureSourceKey() {
                                            {"parameter", ExposureSource::kParameter}};
   return choiceKey<ExposureSource>(
       {"exposure_source", "", wordFor(choices, DeblurParameters{}.exposure_source),
-       "where the exposure time comes from; without a message, `topic` falls back on the last one "
+       "source of the exposure time; without a message, `topic` falls back on the last one "
        "received, then on `exposure_time_us`"},
       choices, [](ExposureSource value, ParameterDraft& draft) {
         draft.loaded.deblur.exposure_source = value;
@@ -114,7 +113,7 @@ ConfigKey exposureSourceKey() {
 ConfigKey maxBufferedEventsKey() {
   return integerKey(
       {"max_buffered_events", "events", std::to_string(DeblurParameters{}.max_buffered_events),
-       "events kept at most, buffered and waiting together; storage grows as needed"},
+       "maximum number of events in memory, buffered and queued together; memory grows as needed"},
       kBufferedEvents, [](std::int64_t value, ParameterDraft& draft) {
         draft.loaded.deblur.max_buffered_events = static_cast<std::size_t>(value);
       });
@@ -123,8 +122,8 @@ ConfigKey maxBufferedEventsKey() {
 ConfigKey latentImagesKey() {
   return integerKey(
       {"latent_images", "images per exposure", std::to_string(LatentSampling{}.per_exposure),
-       "high-rate video on `latent/image_raw`: latent images of each exposure, evenly spaced, "
-       "and at most as many of the gap before it where events bridge that; 0 = off"},
+       "high-rate video on `latent/image_raw`: number of evenly spaced images in each exposure, "
+       "and at most as many in the gap before it if events cover the gap; 0 = off"},
       kLatentImages, [](std::int64_t value, ParameterDraft& draft) {
         draft.loaded.deblur.latent.per_exposure = static_cast<int>(value);
       });
@@ -142,7 +141,7 @@ std::vector<ConfigKey> filterKeys() {
   return {
       boolKey(
           {"filter", "", boolText(defaults.enabled),
-           "everything beyond plain EDI: the filters below"},
+           "all processing beyond plain EDI: the filters and the learning below"},
           [](bool value, ParameterDraft& draft) { draft.loaded.deblur.filter.enabled = value; }),
       boolKey({"filter_despeckle", "", boolText(defaults.gain.despeckle),
                "limit each pixel's log gain to the range of its neighbours': hot pixels, lone "
@@ -177,28 +176,27 @@ std::vector<ConfigKey> filterKeys() {
                   draft.loaded.deblur.filter.gain.restore = static_cast<float>(value);
                 }),
       boolKey({"filter_frame_noise", "", boolText(defaults.frame_noise),
-               "take read and shot noise out of the latent image"},
+               "reduce read and shot noise in the deblurred image"},
               [](bool value, ParameterDraft& draft) {
                 draft.loaded.deblur.filter.frame_noise = value;
               }),
-      boolKey(
-          {"filter_motion", "", boolText(defaults.motion),
-           "steady images that show another instant than the middle of the exposure by that of "
-           "the middle, along the motion: those of `latent/image_raw`, and the deblurred frames "
-           "when `reference` is another"},
-          [](bool value, ParameterDraft& draft) { draft.loaded.deblur.filter.motion = value; }),
+      boolKey({"filter_motion", "", boolText(defaults.motion),
+               "stabilise images away from mid-exposure by warping the mid-exposure image along "
+               "the optical flow: those on `latent/image_raw`, and the deblurred frames if "
+               "`reference` is `start` or `end`"},
+              [](bool value, ParameterDraft& draft) { draft.loaded.deblur.filter.motion = value; }),
       numberKey(
           {"filter_temporal", "", numberText(defaults.temporal),
-           "weight of the deblurred frame before, carried on by the events between, in each "
-           "deblurred frame; 0 = off"},
+           "blend each deblurred frame with the previous one, updated by the events in between; "
+           "weight of the previous one, 0 = off"},
           kFilterTemporal,
           [](double value, ParameterDraft& draft) { draft.loaded.deblur.filter.temporal = value; }),
       boolKey(
           {"refine_contrast", "", boolText(DeblurParameters{}.refine_contrast),
-           "learn the contrast thresholds from consecutive frames, within 30 % of those given"},
+           "learn the contrast thresholds from consecutive frames, within 30 % of the given ones"},
           [](bool value, ParameterDraft& draft) { draft.loaded.deblur.refine_contrast = value; }),
       boolKey({"refine_delay", "", boolText(DeblurParameters{}.refine_delay),
-               "learn the delay of the events behind the frames, up to 5 ms"},
+               "learn by how much events lag behind the light, up to 5 ms"},
               [](bool value, ParameterDraft& draft) { draft.loaded.deblur.refine_delay = value; }),
       numberKey({"frame_noise_dn", "8-bit DN", numberText(defaults.frame_noise_dn),
                  "standard deviation of a frame's noise"},
@@ -211,8 +209,8 @@ std::vector<ConfigKey> filterKeys() {
 
 ConfigKey biasesKey() {
   ConfigKey key = mapKey({"biases", "", "none",
-                          "bias settings that the thresholds are computed from; or the path of a "
-                          "YAML file of them, such as the driver's"},
+                          "bias settings from which the thresholds are computed, or the path of a "
+                          "YAML file with them, such as the driver's"},
                          biasKeys());
   key.is_foreign = isDriverKey;
   key.may_be_file = true;
@@ -226,35 +224,35 @@ std::vector<ConfigKey> buildTopLevelKeys() {
       biasesKey(),
       weightingKey(),
       live(instantKey("reference", &DeblurParameters::reference,
-                      "instant of the exposure that the latent image shows")),
+                      "instant of the exposure that the deblurred image shows")),
       live(instantKey("stamp_reference", &DeblurParameters::stamp_reference,
-                      "instant of the exposure that the stamp of an input image means")),
+                      "instant of the exposure that the stamp of an input image refers to")),
       live(exposureSourceKey()),
       live(timeKey("exposure_time_us", "us", kNanosecondsPerMicrosecond, kExposureUs,
-                   &DeblurParameters::exposure_time_ns, "exposure time; 0 = not known")),
+                   &DeblurParameters::exposure_time_ns, "exposure time; 0 = unknown")),
       live(timeKey("time_offset_us", "us", kNanosecondsPerMicrosecond, kTimeOffsetUs,
                    &DeblurParameters::time_offset_ns,
-                   "clock of the events minus clock of the frames")),
+                   "event time minus frame time of the same instant")),
       live(timeKey("close_timeout_ms", "ms", kNanosecondsPerMillisecond, kTimeoutMs,
                    &DeblurParameters::close_timeout_ns,
-                   "from a frame's arrival until it is closed with the events that have come")),
+                   "how long after its arrival a frame waits for its last events")),
       maxBufferedEventsKey(),
       timeKey("max_backward_jump_ms", "ms", kNanosecondsPerMillisecond, kJumpMs,
               &DeblurParameters::max_backward_jump_ns,
-              "an event older than the newest by more than this is a jump of the clock, by less "
-              "a late event"),
+              "an event older than the newest one by more than this is a clock jump, by less a "
+              "late event"),
       timeKey("max_forward_jump_ms", "ms", kNanosecondsPerMillisecond, kJumpMs,
               &DeblurParameters::max_forward_jump_ns,
-              "an event ahead of the newest by more than this is a jump of the clock, once the "
-              "next array confirms it"),
+              "an event ahead of the newest one by more than this is a clock jump, once the next "
+              "array confirms it"),
       live(latentImagesKey()),
       textKey({"response_file", "", "none",
-               "camera response: 256 natural-log irradiances, one for each 8-bit DN"},
+               "camera response: file with 256 natural-log irradiances, one for each 8-bit DN"},
               [](const std::string& value, ParameterDraft& draft) { draft.response_file = value; }),
       numberKey(
-          {"response_offset_dn", "DN", "0", "offset d of the linear response, exposure = DN + d"},
+          {"response_offset_dn", "DN", "0", "offset d of the linear response: intensity = DN + d"},
           kOffsetDn, [](double value, ParameterDraft& draft) { draft.response_offset_dn = value; }),
-      textKey({"frame_id", "", "\"\"", "replaces an empty frame_id of the input images"},
+      textKey({"frame_id", "", "\"\"", "`frame_id` of the output if that of the input is empty"},
               [](const std::string& value, ParameterDraft& draft) {
                 draft.loaded.ros.frame_id = value;
               }),
@@ -263,7 +261,7 @@ std::vector<ConfigKey> buildTopLevelKeys() {
            "publish every frame unchanged"},
           [](bool value, ParameterDraft& draft) { draft.loaded.deblur.passthrough = value; })),
       boolKey({"lazy", "", boolText(RosParameters{}.lazy),
-               "subscribe to the inputs only while somebody subscribes to an output image"},
+               "subscribe to the inputs only while an output image has a subscriber"},
               [](bool value, ParameterDraft& draft) { draft.loaded.ros.lazy = value; }),
   };
   for (ConfigKey& key : filterKeys()) {

@@ -28,36 +28,37 @@ std::vector<ConfigKey> keysOf(TagDetectorParameters& read) {
   }
   return {
       choiceKey<std::string>(
-          {"family", "", defaults.detector.family, "family of the tags"}, families,
+          {"family", "", defaults.detector.family, "tag family"}, families,
           [&read](const std::string& value, ParameterDraft&) { read.detector.family = value; }),
       numberKey({"tag_size_m", "m", numberText(defaults.tag_size_m),
-                 "side of the tag's outline, of the black square in most families; distances "
-                 "follow from it"},
+                 "side length of the tag's outline, which is the black square in most families; "
+                 "determines distances"},
                 kTagSize_m, [&read](double value, ParameterDraft&) { read.tag_size_m = value; }),
       numberKey({"decimate", "", numberText(defaults.detector.decimate),
-                 "tags are searched in a frame smaller by this factor: faster, and small tags are "
-                 "missed"},
+                 "factor by which the frame is shrunk before the search: faster, but small tags "
+                 "are missed"},
                 kDecimate,
                 [&read](double value, ParameterDraft&) { read.detector.decimate = value; }),
-      integerKey({"threads", "", numberText(defaults.detector.threads), "threads that search"},
+      integerKey({"threads", "", numberText(defaults.detector.threads),
+                  "number of threads for the search"},
                  kThreads,
                  [&read](std::int64_t value, ParameterDraft&) {
                    read.detector.threads = static_cast<int>(value);
                  }),
       integerKey({"corrected_bits", "bits", numberText(defaults.detector.corrected_bits),
-                  "wrong bits that are corrected; fewer give fewer false tags. The largest "
-                  "families take at most 1"},
+                  "number of wrong bits to correct; fewer give fewer false detections. The largest "
+                  "families allow at most 1"},
                  kCorrectedBits,
                  [&read](std::int64_t value, ParameterDraft&) {
                    read.detector.corrected_bits = static_cast<int>(value);
                  }),
       boolKey({"rectified", "", boolText(defaults.rectified),
-               "the images are rectified, as `image_proc` gives them"},
+               "the images are already rectified, for instance by `image_proc`"},
               [&read](bool value, ParameterDraft&) { read.rectified = value; }),
-      textKey({"frame_id", "", "\"\"", "replaces an empty frame_id of the images"},
+      textKey({"frame_id", "", "\"\"", "`frame_id` of the output if that of the images is empty"},
               [&read](const std::string& value, ParameterDraft&) { read.frame_id = value; }),
       boolKey({"lazy", "", boolText(defaults.lazy),
-               "subscribe to the images only while somebody subscribes to an output"},
+               "subscribe to the images only while an output has a subscriber"},
               [&read](bool value, ParameterDraft&) { read.lazy = value; }),
   };
 }
