@@ -1,6 +1,9 @@
 #include "fast_edi/core/deblur_counters.hpp"
 
+#include <cstdlib>
 #include <numeric>
+
+#include "fast_edi/core/types.hpp"
 
 namespace fast_edi {
 
@@ -18,8 +21,22 @@ const char* toString(PassReason reason) {
       return "no event stream yet";
     case PassReason::kEventsMissing:
       return "events missing in the exposure";
+    case PassReason::kClocksDiffer:
+      return "clocks differ";
   }
   return "unknown reason";
+}
+
+std::string toString(const ClockPair& clocks) {
+  // Integers, so that no digit is lost and no locale puts in a comma.
+  const auto seconds = [](std::int64_t t_ns) {
+    const std::int64_t ms = t_ns / kNanosecondsPerMillisecond;
+    const std::string fraction = std::to_string(1000 + std::abs(ms % 1000)).substr(1);
+    return std::string(ms < 0 ? "-" : "") + std::to_string(std::abs(ms / 1000)) + "." + fraction +
+           " s";
+  };
+  return "the last such frame is stamped " + seconds(clocks.frame_ns) + ", the newest event " +
+         seconds(clocks.events_ns);
 }
 
 std::uint64_t DeblurCounters::framesPassed() const {

@@ -108,6 +108,7 @@ class Deblurrer::Impl {
   bool isOutOfTime(const WaitingFrame& frame) const;
   FrameVerdict judge(const WaitingFrame& frame, bool out_of_time) const;
   void closeReady();
+  void noteClocks(const FrameVerdict& verdict, const ExposureInterval& window);
   void closeFront(const FrameVerdict& verdict);
   void closeFrontWithWhatHasCome();
   void forgetBefore(std::int64_t t_ns);
@@ -138,6 +139,9 @@ class Deblurrer::Impl {
   EventStream events_;
   WindowPredictor predictor_;
   std::int64_t now_ns_ = INT64_MIN;
+  std::optional<std::int64_t> last_events_ns_;  ///< arrival of the last array that holds any
+  bool clocks_differ_ = false;                  ///< as the last frame showed
+  ClockPair differing_clocks_;
 
   std::deque<WaitingFrame> waiting_;
   std::uint64_t next_number_ = 0;
@@ -168,6 +172,9 @@ class Deblurrer::Impl {
 void Deblurrer::Impl::addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                                 std::int64_t now_ns) {
   advance(now_ns);
+  if (!events.empty()) {
+    last_events_ns_ = now_ns_;
+  }
   events_.take(events, size, sequence);
   closeReady();
   follow();
@@ -296,6 +303,7 @@ DeblurStatus Deblurrer::Impl::status() const {
                                                         : parameters_.exposure_time_ns;
   status.exposure_known = status.last_exposure_ns > 0;
   status.thresholds = parameters_.thresholds;
+  status.differing_clocks = differing_clocks_;
   status.event_delay_ns = parameters_.time_offset_ns - requested_.time_offset_ns;
   return status;
 }
@@ -306,6 +314,7 @@ void Deblurrer::Impl::beginFrameEpoch(bool after_time_jump) {
   ++epoch_;
   after_time_jump_ = after_time_jump;
   latest_stamp_ns_.reset();
+  clocks_differ_ = false;
   predictor_.reset();
 }
 
@@ -341,7 +350,14 @@ bool Deblurrer::Impl::isOutOfTime(const WaitingFrame& frame) const {
 }
 
 FrameVerdict Deblurrer::Impl::judge(const WaitingFrame& frame, bool out_of_time) const {
-  const FrameTraits traits{frame.input.supported, frame.input.image.size, frame.after_time_jump};
+  const std::int64_t until_ns = std::min(now_ns_, frame.arrival_ns + parameters_.close_timeout_ns);
+  FrameTraits traits;
+  traits.supported = frame.input.supported;
+  traits.size = frame.input.image.size;
+  traits.after_time_jump = frame.after_time_jump;
+  traits.stream_silent =
+      !last_events_ns_ || until_ns - *last_events_ns_ >= parameters_.close_timeout_ns;
+  traits.clocks_differed = clocks_differ_;
   return frame.window.judge(traits, events_, parameters_, out_of_time);
 }
 
@@ -350,6 +366,7 @@ void Deblurrer::Impl::closeReady() {
   if (calibration_generation_ != events_.generation()) {
     calibration_generation_ = events_.generation();
     resetCalibration();
+    clocks_differ_ = false;
   }
   while (!waiting_.empty()) {
     FrameVerdict verdict = judge(waiting_.front(), false);
@@ -397,6 +414,16 @@ bool Deblurrer::Impl::isLaterThanLastOutput(const WaitingFrame& frame, std::int6
   return true;
 }
 
+/// Remembers that frames lie ahead of the events until the events have reached one.
+void Deblurrer::Impl::noteClocks(const FrameVerdict& verdict, const ExposureInterval& window) {
+  if (verdict.state == FrameState::kReady) {
+    clocks_differ_ = false;
+  } else if (verdict.reason == PassReason::kClocksDiffer) {
+    clocks_differ_ = !events_.isPast(window.start_ns);
+    differing_clocks_ = {window.at(parameters_.stamp_reference), events_.lists()->newest()};
+  }
+}
+
 /// \pre verdict.isFinal()
 void Deblurrer::Impl::closeFront(const FrameVerdict& verdict) {
   WaitingFrame frame = std::move(waiting_.front());
@@ -420,6 +447,7 @@ void Deblurrer::Impl::closeFront(const FrameVerdict& verdict) {
   }
 
   const ExposureInterval window = frame.window.inEventTime(parameters_);
+  noteClocks(verdict, window);
   if (verdict.state == FrameState::kReady) {
     deblur(output, window);
   } else {
@@ -464,7 +492,9 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
     middle_.take(gain_, reference_ns, parameters_.thresholds);
   }
   const MutableImageView out = sink_.begin(output.input);
-  latent_image_.write(output.input.image, gain_.data(), parameters_.response, out);
+  if (out.data != nullptr) {
+    latent_image_.write(output.input.image, gain_.data(), parameters_.response, out);
+  }
   if (steadies) {
     const ImageView middle = steadied(output, window, out);
     if (wants_video) {

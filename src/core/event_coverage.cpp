@@ -18,7 +18,8 @@ void EventCoverage::reset() {
 
 void EventCoverage::start(std::int64_t first_event_ns) {
   started_ = true;
-  from_ns_ = first_event_ns - kStartSlack_ns;
+  began_ns_ = first_event_ns - kStartSlack_ns;
+  from_ns_ = began_ns_;
 }
 
 void EventCoverage::discardBefore(std::int64_t t_ns) {

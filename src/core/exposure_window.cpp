@@ -36,6 +36,21 @@ ExposureInterval ExposureWindow::inEventTime(const DeblurParameters& parameters)
           interval.end_ns + parameters.time_offset_ns};
 }
 
+/// \return nullopt when the exposure can be deblurred with the events that have come
+std::optional<PassReason> ExposureWindow::whyNotCovered(const FrameTraits& frame,
+                                                        const EventStream& events,
+                                                        const ExposureInterval& window) const {
+  if (!events.covers(window)) {
+    return events.beganAfter(window.end_ns + kClocksDiffer_ns) ? PassReason::kClocksDiffer
+                                                               : PassReason::kEventsMissing;
+  }
+  if (events.hasReached(window.start_ns) || (frame.stream_silent && !frame.clocks_differed)) {
+    return std::nullopt;
+  }
+  return events.hasReached(window.start_ns - kClocksDiffer_ns) ? PassReason::kEventsMissing
+                                                               : PassReason::kClocksDiffer;
+}
+
 FrameVerdict ExposureWindow::judge(const FrameTraits& frame, const EventStream& events,
                                    const DeblurParameters& parameters, bool out_of_time) const {
   const auto pass = [](PassReason reason) {
@@ -76,8 +91,8 @@ FrameVerdict ExposureWindow::judge(const FrameTraits& frame, const EventStream& 
   if (frame.size != events.lists()->size()) {
     return pass(PassReason::kSizeMismatch);
   }
-  if (!covered) {
-    return pass(PassReason::kEventsMissing);
+  if (const std::optional<PassReason> reason = whyNotCovered(frame, events, window)) {
+    return pass(*reason);
   }
   return {FrameState::kReady, PassReason::kPassthroughParameter};
 }

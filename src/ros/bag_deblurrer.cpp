@@ -36,6 +36,10 @@ void printSummary(std::ostream& out, const BagDeblurReport& report) {
     printCount(out, counters.frames_passed[reason],
                std::string("of these: ") + toString(static_cast<PassReason>(reason)));
   }
+  if (counters.frames_passed[static_cast<std::size_t>(PassReason::kClocksDiffer)] > 0) {
+    out << "              (" << toString(report.differing_clocks)
+        << "; validate_bag\n              proposes a time_offset_us)\n";
+  }
   printCount(out, counters.latent_images, "latent images beside them");
   printCount(out, counters.frames_suppressed,
              "without output: stamp not later than the one before");
@@ -98,6 +102,7 @@ BagDeblurReport BagDeblurrer::run() {
   pipeline_.finish();
   writeOutputs(report_.last_record_time);
   report_.counters = pipeline_.counters();
+  report_.differing_clocks = pipeline_.status().differing_clocks;
   report_.damage = reader_.damage();
   report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report_;

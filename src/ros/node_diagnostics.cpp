@@ -49,6 +49,9 @@ std::string adviceFor(PassReason reason, const NodeSnapshot& now, const InputTop
       return "expected event arrays on " + topics.events;
     case PassReason::kEventsMissing:
       return "expected all events of the exposure on " + topics.events;
+    case PassReason::kClocksDiffer:
+      return "expected events on " + topics.events + " within 1 s of the exposure; " +
+             toString(now.status.differing_clocks) + ": see time_offset_us";
   }
   return "";
 }

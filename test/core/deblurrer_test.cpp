@@ -191,6 +191,95 @@ TEST_F(DeblurrerTest, AStillSceneIsDeblurredUnchanged) {
   EXPECT_EQ(counters().frames_deblurred, 1u);
 }
 
+TEST_F(DeblurrerTest, FramesFarAheadOfEventsThatKeepComingAreNoStillScene) {
+  // Frame stamps that run twice as fast as the events.
+  for (std::int64_t t = 0; t < 4000; t += 40) {
+    events(t, t + 40, t + 45);
+    frame(2 * (t + 30), t + 50);
+  }
+  pipeline().finish();
+  EXPECT_EQ(counters().frames_still, 0u);
+  const auto differ = counters().frames_passed[static_cast<std::size_t>(PassReason::kClocksDiffer)];
+  const auto missing =
+      counters().frames_passed[static_cast<std::size_t>(PassReason::kEventsMissing)];
+  EXPECT_GT(differ, 60u);
+  EXPECT_GT(missing, 10u);  // up to one second apart
+  EXPECT_LE(counters().frames_deblurred, 4u);
+  EXPECT_EQ(counters().framesPassed(), differ + missing);
+  const ClockPair clocks = pipeline().status().differing_clocks;
+  EXPECT_GT(clocks.frame_ns - clocks.events_ns, kNanosecondsPerSecond);
+  EXPECT_EQ(clocks.frame_ns, kZero + 2 * (3960 + 30) * kMs);
+}
+
+TEST_F(DeblurrerTest, AFrameMoreThanASecondAheadNamesTheClocksAndOneNearerMissesEvents) {
+  events(0, 10, 0);
+  frame(1021, 1);  // begins at 1011 ms, more than 1 s behind the newest event
+  eventAt(kZero + 11 * kMs - 1, 2);
+  advance(101);
+  expectPassed(0, PassReason::kClocksDiffer);
+  frame(1022, 102);  // begins at 1012 ms
+  eventAt(kZero + 12 * kMs, 103);
+  advance(202);
+  expectPassed(1, PassReason::kEventsMissing);
+}
+
+TEST_F(DeblurrerTest, OnceClocksDifferSilenceIsNoStillScene) {
+  events(0, 10, 0);
+  frame(2000, 1);
+  events(10, 20, 50);
+  advance(101);
+  expectPassed(0, PassReason::kClocksDiffer);
+  frame(2040, 102);
+  advance(202);
+  expectPassed(1, PassReason::kClocksDiffer);
+  events(20, 2120, 203);  // the events come after all
+  frame(2080, 204);
+  expectDeblurred(2);
+  frame(2500, 205);
+  advance(305);
+  ASSERT_EQ(outputs().size(), 4u);
+  EXPECT_TRUE(output(3).deblurred);
+  EXPECT_EQ(counters().frames_still, 1u);
+}
+
+TEST_F(DeblurrerTest, FramesFarBeforeTheFirstEventNameTheClocks) {
+  events(5000, 5100, 0);
+  frame(3988, 1);  // ends at 3998 ms; events count as complete from 4999 ms
+  expectPassed(0, PassReason::kClocksDiffer);
+  EXPECT_EQ(pipeline().status().differing_clocks.frame_ns, kZero + 3988 * kMs);
+  frame(3989, 2);
+  expectPassed(1, PassReason::kEventsMissing);
+}
+
+TEST_F(DeblurrerTest, EventsThatLagBehindTheFramesAreMissingAndNoStillScene) {
+  events(0, 10, 0);
+  for (std::int64_t t = 0; t < 400; t += 40) {
+    frame(t + 500, t);
+    events(t + 10, t + 50, t + 20);
+  }
+  advance(1000);
+  ASSERT_EQ(outputs().size(), 10u);
+  for (std::size_t i = 0; i < outputs().size(); ++i) {
+    expectPassed(i, PassReason::kEventsMissing);
+  }
+}
+
+TEST_F(DeblurrerTest, WhereTheRecordingEndsBeforeItsLastFrameNoSceneIsStill) {
+  events(0, 60, 60);
+  frame(100, 110);
+  pipeline().finish();
+  expectPassed(0, PassReason::kEventsMissing);
+}
+
+TEST_F(DeblurrerTest, ASceneThatWasStillForLongEnoughIsStillAtTheEndOfTheRecording) {
+  events(0, 60, 60);
+  frame(100, 160);
+  pipeline().finish();
+  ASSERT_EQ(outputs().size(), 1u);
+  EXPECT_TRUE(output(0).deblurred);
+  EXPECT_EQ(counters().frames_still, 1u);
+}
+
 TEST_F(DeblurrerTest, KeepsNoMoreEventsThanTheLongestExposureNeedsWhileItIsUnknown) {
   constexpr std::size_t kEventsOfArray = 20'000;  // of 100 ms
   constexpr std::size_t kMost = 12 * kEventsOfArray + PixelEventLists::kChunkEvents;
@@ -537,7 +626,7 @@ TEST_F(DeblurrerTest, AJumpBackOfTheFramesAloneIsPassedThroughAfterTheTimeout) {
   advance(101);
   EXPECT_EQ(outputs().size(), 1u);
   advance(102);
-  expectPassed(1, PassReason::kEventsMissing);
+  expectPassed(1, PassReason::kClocksDiffer);
   EXPECT_EQ(counters().frame_time_jumps, 1u);
 }
 
@@ -747,7 +836,7 @@ TEST_F(DeblurrerTest, FinishClosesAllWaitingFramesWithWhatHasCome) {
   pipeline().finish();
   ASSERT_EQ(outputs().size(), 2u);
   expectDeblurred(0);
-  EXPECT_TRUE(output(1).deblurred);
+  expectPassed(1, PassReason::kEventsMissing);  // none of its events were recorded
   EXPECT_EQ(output(1).exposure.length(), 20 * kMs);
   EXPECT_EQ(pipeline().status().waiting_frames, 0u);
 }

@@ -64,6 +64,16 @@ TEST(EventCoverage, WhatWasDiscardedIsNotCovered) {
   EXPECT_FALSE(coverage.covers({kFirst + 99, kFirst + 200}));
 }
 
+TEST(EventCoverage, RemembersWhereItBeganWhateverIsDiscarded) {
+  EventCoverage coverage;
+  EXPECT_FALSE(coverage.beganAfter(0));
+  coverage.start(kFirst);
+  EXPECT_TRUE(coverage.beganAfter(kFirst - kSlack - 1));
+  EXPECT_FALSE(coverage.beganAfter(kFirst - kSlack));
+  coverage.discardBefore(kFirst + 100);
+  EXPECT_FALSE(coverage.beganAfter(kFirst));
+}
+
 TEST(EventCoverage, ManyHolesTakeTimeRatherThanMemory) {
   EventCoverage coverage = startedAt(kFirst);
   constexpr int kHoles = 1000;

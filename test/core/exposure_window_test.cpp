@@ -98,6 +98,26 @@ TEST_F(ExposureWindowTest, OutOfTimeItIsReadyWithWhatHasCome) {
   EXPECT_EQ(state(true), FrameState::kReady);
 }
 
+TEST_F(ExposureWindowTest, WithoutAnEventAsLateAsItsStartTheSceneIsStillOnlyInSilence) {
+  takeEvents({start - 5 * kMs});
+  EXPECT_EQ(state(true), FrameState::kReady);
+  traits.clocks_differed = true;
+  EXPECT_EQ(reason(true), PassReason::kEventsMissing);
+  traits.clocks_differed = false;
+  traits.stream_silent = false;
+  EXPECT_EQ(reason(true), PassReason::kEventsMissing);
+  takeEvents({start});
+  EXPECT_EQ(state(true), FrameState::kReady);
+}
+
+TEST_F(ExposureWindowTest, MoreThanASecondAwayTheClocksDiffer) {
+  traits.stream_silent = false;
+  takeEvents({start - kClocksDiffer_ns - 1});
+  EXPECT_EQ(reason(true), PassReason::kClocksDiffer);
+  takeEvents({start - kClocksDiffer_ns});
+  EXPECT_EQ(reason(true), PassReason::kEventsMissing);
+}
+
 TEST_F(ExposureWindowTest, TheTimeOffsetShiftsTheEventsOnly) {
   parameters.time_offset_ns = 3 * kMs;
   EXPECT_EQ(window.inFrameTime(parameters), (ExposureInterval{start, end}));
@@ -147,10 +167,10 @@ TEST_F(ExposureWindowTest, PassthroughWaitsForNothing) {
 
 TEST_F(ExposureWindowTest, AfterAJumpBackOfTheFramesItWaitsForThatOfTheEvents) {
   takeEvents({end + 10 * kNanosecondsPerSecond});
-  EXPECT_EQ(reason(), PassReason::kEventsMissing);
+  EXPECT_EQ(reason(), PassReason::kClocksDiffer);
   traits.after_time_jump = true;
   EXPECT_EQ(state(), FrameState::kWaitingForEventJump);
-  EXPECT_EQ(reason(true), PassReason::kEventsMissing);
+  EXPECT_EQ(reason(true), PassReason::kClocksDiffer);
   takeEvents({start, start + 1, end});
   EXPECT_EQ(state(), FrameState::kReady);
 }

@@ -121,6 +121,18 @@ TEST_F(NodeDiagnosticsTest, SaysWhyFramesArePassedThrough) {
             "3");
 }
 
+TEST_F(NodeDiagnosticsTest, NamesBothClocksWhereTheyDiffer) {
+  tick();
+  now_.counters.frames_passed[static_cast<std::size_t>(PassReason::kClocksDiffer)] = 2;
+  now_.status.differing_clocks = {2 * kNanosecondsPerSecond, 1'234'567'890};
+  const auto status = report();
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_THAT(status.message,
+              HasSubstr("2 frame(s) on /dvs/image_raw passed through unchanged: clocks differ"));
+  EXPECT_THAT(status.message, HasSubstr("stamped 2.000 s, the newest event 1.234 s"));
+  EXPECT_EQ(value(status, "Frames passed through: clocks differ"), "2");
+}
+
 TEST_F(NodeDiagnosticsTest, DoesNotComplainOfWhatTheUserAskedFor) {
   tick();
   now_.counters.frames_passed[static_cast<std::size_t>(PassReason::kPassthroughParameter)] = 3;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 namespace fast_edi {
 
@@ -15,11 +16,20 @@ enum class PassReason {
   kSizeMismatch,     ///< frame and event array differ in size
   kExposureUnknown,  ///< neither topic nor parameter
   kNoEventStream,    ///< start-up: no event array was ever seen
-  kEventsMissing,    ///< start-up, flush, overflow or a gap inside the exposure
+  kEventsMissing,    ///< start-up, flush, overflow, a gap or the stream's end inside the exposure
+  kClocksDiffer,     ///< events do come, all of them more than a second away from the exposure
 };
-constexpr std::size_t kPassReasonCount = 6;
+constexpr std::size_t kPassReasonCount = 7;
 /// A short phrase for people, e.g. "exposure unknown".
 const char* toString(PassReason reason);
+
+/// What the clocks of frames and events showed at one instant.
+struct ClockPair {
+  std::int64_t frame_ns = 0;   ///< stamp of a frame, shifted by time_offset
+  std::int64_t events_ns = 0;  ///< newest event
+};
+/// For people, e.g. "the last such frame is stamped 20.000 s, the newest event 10.000 s".
+std::string toString(const ClockPair& clocks);
 
 /// Counts since construction. Nothing is lost without one of these moving.
 struct DeblurCounters {

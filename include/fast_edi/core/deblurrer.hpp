@@ -41,6 +41,8 @@ struct DeblurStatus {
   std::int64_t last_exposure_ns = 0;
   ContrastThresholds thresholds;    ///< in force: as given, or as learned
   std::int64_t event_delay_ns = 0;  ///< as learned
+  /// At the last frame that was passed through for PassReason::kClocksDiffer; zero before.
+  ClockPair differing_clocks;
 };
 
 class Deblurrer {

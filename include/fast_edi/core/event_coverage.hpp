@@ -25,6 +25,8 @@ class EventCoverage {
   void reset();
   bool started() const { return started_; }
   void start(std::int64_t first_event_ns);
+  /// True when the stream counts as complete from later than \p t_ns only, discarded or not.
+  bool beganAfter(std::int64_t t_ns) const { return started_ && began_ns_ > t_ns; }
 
   /// Nothing before \p t_ns will be asked for any more; asked for all the same, it is not covered.
   void discardBefore(std::int64_t t_ns);
@@ -39,6 +41,7 @@ class EventCoverage {
 
  private:
   bool started_ = false;
+  std::int64_t began_ns_ = 0;
   std::int64_t from_ns_ = 0;  ///< nothing is covered before this
   std::vector<ExposureInterval> holes_;
   bool open_ = false;

@@ -69,6 +69,8 @@ class EventStream {
   bool hasReached(std::int64_t t_ns) const;
   /// True when the newest event is later than \p t_ns.
   bool isPast(std::int64_t t_ns) const;
+  /// True when the epoch's first event is later than \p t_ns, whatever was discarded since.
+  bool beganAfter(std::int64_t t_ns) const { return coverage_.beganAfter(t_ns); }
   /// True when no event of the interval is missing, apart from those still to come.
   bool covers(const ExposureInterval& interval) const;
   /// Changes whenever the lists were emptied.

@@ -38,7 +38,14 @@ struct FrameTraits {
   bool supported = true;  ///< its encoding is
   SensorSize size;
   bool after_time_jump = false;  ///< the frames' clock jumped back to this frame's epoch
+  /// No events came for as long as a frame waits: the scene may be still.
+  bool stream_silent = true;
+  /// The frame before was passed through because clocks differ.
+  bool clocks_differed = false;
 };
+
+/// Events that all lie further from an exposure than this are stamped by another clock.
+constexpr std::int64_t kClocksDiffer_ns = kNanosecondsPerSecond;
 
 class ExposureWindow {
  public:
@@ -62,10 +69,15 @@ class ExposureWindow {
 
   /// \param out_of_time the frame's timeout is over, or for another reason nothing more is awaited:
   ///        the verdict is final unless the exposure message is still awaited
+  ///        Then the scene is taken for still, with no event in the exposure, only where the stream
+  ///        is silent: events that come but do not reach the exposure say nothing about it.
   FrameVerdict judge(const FrameTraits& frame, const EventStream& events,
                      const DeblurParameters& parameters, bool out_of_time) const;
 
  private:
+  std::optional<PassReason> whyNotCovered(const FrameTraits& frame, const EventStream& events,
+                                          const ExposureInterval& window) const;
+
   enum class Source { kAwaited, kMessage, kParameter };
 
   std::int64_t stamp_ns_;

@@ -24,6 +24,7 @@ namespace fast_edi {
 /// What a run did.
 struct BagDeblurReport {
   DeblurCounters counters;
+  ClockPair differing_clocks;            ///< see DeblurStatus
   std::uint64_t messages = 0;            ///< copied
   std::uint64_t outputs = 0;             ///< frames put out
   std::uint64_t malformed_messages = 0;  ///< on a topic of ours, but unreadable: copied, not used

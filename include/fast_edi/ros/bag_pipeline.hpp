@@ -40,6 +40,7 @@ class BagPipeline {
   std::vector<Output> takeOutputs();
 
   const DeblurCounters& counters() const { return deblurrer_.counters(); }
+  DeblurStatus status() const { return deblurrer_.status(); }
 
  private:
   enum class Use { kNone, kEvents, kImage, kExposure, kCameraInfo };
