@@ -23,6 +23,8 @@ const char* toString(PassReason reason) {
       return "events missing in the exposure";
     case PassReason::kClocksDiffer:
       return "clocks differ";
+    case PassReason::kTooManyWaiting:
+      return "too many frames waiting";
   }
   return "unknown reason";
 }

@@ -96,6 +96,7 @@ class Deblurrer::Impl {
 
   const DeblurParameters& parameters() const { return requested_; }
   const DeblurCounters& counters() const { return counters_; }
+  std::size_t bufferedEvents() const;
   DeblurStatus status() const;
 
  private:
@@ -117,7 +118,7 @@ class Deblurrer::Impl {
   ImageView steadied(const OutputFrame& output, const ExposureInterval& window,
                      const MutableImageView& image);
   void passThrough(OutputFrame& output, PassReason reason);
-  bool isLaterThanLastOutput(const WaitingFrame& frame, std::int64_t stamp_ns);
+  bool isLaterThanLastOutput(const WaitingFrame& frame, std::int64_t stamp_ns) const;
 
   // Integral
   bool prepareIntegral(bool may_allocate);
@@ -202,7 +203,10 @@ void Deblurrer::Impl::addFrame(InputFrame frame, std::int64_t now_ns) {
   }
   if (waiting_.size() > kMaxWaitingFrames) {
     settle(waiting_.front());
-    closeFront({FrameState::kPassThrough, PassReason::kEventsMissing});
+    const FrameVerdict verdict = judge(waiting_.front(), false);
+    closeFront(verdict.isFinal()
+                   ? verdict
+                   : FrameVerdict{FrameState::kPassThrough, PassReason::kTooManyWaiting});
   }
   closeReady();
   expectNext();
@@ -240,7 +244,7 @@ void Deblurrer::Impl::finish() {
 }
 
 void Deblurrer::Impl::pause() {
-  counters_.frames_suppressed += waiting_.size();
+  counters_.frames_abandoned += waiting_.size();
   waiting_.clear();
   events_.restart();
   pairing_.restart();
@@ -285,17 +289,22 @@ void Deblurrer::Impl::setParameters(const DeblurParameters& parameters) {
   expectNext();
 }
 
+std::size_t Deblurrer::Impl::bufferedEvents() const {
+  return events_.lists() != nullptr ? events_.lists()->eventCount() : 0;
+}
+
 DeblurStatus Deblurrer::Impl::status() const {
   DeblurStatus status;
+  status.buffered_events = bufferedEvents();
   status.waiting_frames = waiting_.size();
   status.events_seen = events_.seen();
   status.sensor_size = frame_size_;
-  status.buffer_bytes = events_.memoryBytes() + gain_.capacity() * sizeof(float) +
-                        video_.memoryBytes() + middle_.memoryBytes() + compensation_.memoryBytes() +
-                        (integral_ ? integral_->memoryBytes() : 0) +
-                        (calibration_ ? calibration_->memoryBytes() : 0);
+  status.buffer_bytes =
+      events_.memoryBytes() + (gain_.capacity() + unfiltered_gain_.capacity()) * sizeof(float) +
+      fusion_.memoryBytes() + latent_image_.memoryBytes() + video_.memoryBytes() +
+      middle_.memoryBytes() + compensation_.memoryBytes() +
+      (integral_ ? integral_->memoryBytes() : 0) + (calibration_ ? calibration_->memoryBytes() : 0);
   if (events_.lists() != nullptr) {
-    status.buffered_events = events_.lists()->eventCount();
     status.sensor_size = events_.lists()->size();
   }
   const bool by_topic = parameters_.exposure_source == ExposureSource::kTopic;
@@ -405,13 +414,9 @@ void Deblurrer::Impl::beforeBreak(StreamBreak kind, std::int64_t next_event_ns) 
   }
 }
 
-bool Deblurrer::Impl::isLaterThanLastOutput(const WaitingFrame& frame, std::int64_t stamp_ns) {
-  if (frame.epoch == output_epoch_ && last_output_ns_ && stamp_ns <= *last_output_ns_) {
-    return false;
-  }
-  output_epoch_ = frame.epoch;
-  last_output_ns_ = stamp_ns;
-  return true;
+bool Deblurrer::Impl::isLaterThanLastOutput(const WaitingFrame& frame,
+                                            std::int64_t stamp_ns) const {
+  return frame.epoch != output_epoch_ || !last_output_ns_ || stamp_ns > *last_output_ns_;
 }
 
 /// Remembers that frames lie ahead of the events until the events have reached one.
@@ -445,6 +450,8 @@ void Deblurrer::Impl::closeFront(const FrameVerdict& verdict) {
     ++counters_.frames_suppressed;
     return;
   }
+  output_epoch_ = frame.epoch;
+  last_output_ns_ = output.stamp_ns;
 
   const ExposureInterval window = frame.window.inEventTime(parameters_);
   noteClocks(verdict, window);
@@ -715,6 +722,10 @@ const DeblurParameters& Deblurrer::parameters() const {
 
 const DeblurCounters& Deblurrer::counters() const {
   return impl_->counters();
+}
+
+std::size_t Deblurrer::bufferedEvents() const {
+  return impl_->bufferedEvents();
 }
 
 DeblurStatus Deblurrer::status() const {

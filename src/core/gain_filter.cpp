@@ -90,4 +90,11 @@ void GainFilter::despeckle() {
   log_gain_.swap(despeckled_);
 }
 
+std::size_t GainFilter::memoryBytes() const {
+  return smoother_.memoryBytes() + restoration_.memoryBytes() +
+         (log_gain_.capacity() + despeckled_.capacity() + lowest_.capacity() +
+          highest_.capacity()) *
+             sizeof(float);
+}
+
 }  // namespace fast_edi

@@ -68,4 +68,9 @@ void LatentImage::write(const ImageView& blurry, float* gain, const CameraRespon
   }
 }
 
+std::size_t LatentImage::memoryBytes() const {
+  return (gain_filter_ ? gain_filter_->memoryBytes() : 0) +
+         (frame_noise_filter_ ? frame_noise_filter_->memoryBytes() : 0);
+}
+
 }  // namespace fast_edi

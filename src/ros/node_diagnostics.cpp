@@ -52,6 +52,8 @@ std::string adviceFor(PassReason reason, const NodeSnapshot& now, const InputTop
     case PassReason::kClocksDiffer:
       return "expected events on " + topics.events + " within 1 s of the exposure; " +
              toString(now.status.differing_clocks) + ": see time_offset_us";
+    case PassReason::kTooManyWaiting:
+      return "expected their events on " + topics.events + " sooner, or a shorter close_timeout_ms";
   }
   return "";
 }
@@ -223,6 +225,7 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
                c.frames_passed[i]);
   }
   status.add("Frames without output", c.frames_suppressed);
+  status.add("Frames abandoned", c.frames_abandoned);
   status.add("Frames refused", now_.frames_malformed);
   status.add("Frames missing", now_.frames_missing);
   status.add("Camera infos refused", now_.camera_infos_refused);

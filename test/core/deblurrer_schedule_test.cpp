@@ -197,8 +197,8 @@ class InvariantChecker {
   void check() {
     const DeblurCounters& c = deblurrer_.counters();
     const DeblurStatus status = deblurrer_.status();
-    ASSERT_EQ(c.frames_in,
-              c.frames_deblurred + c.framesPassed() + c.frames_suppressed + status.waiting_frames);
+    ASSERT_EQ(c.frames_in, c.frames_deblurred + c.framesPassed() + c.frames_suppressed +
+                               c.frames_abandoned + status.waiting_frames);
     ASSERT_EQ(c.frames_deblurred + c.framesPassed(), sink_.outputs.size());
     ASSERT_EQ(c.closes_followed + c.closes_surprise, c.frames_deblurred);
     ASSERT_LE(c.frames_still, c.frames_deblurred);

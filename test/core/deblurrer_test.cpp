@@ -754,7 +754,21 @@ TEST_F(DeblurrerTest, FramesWithoutEndAreBoundedByPassingTheOldestThrough) {
     EXPECT_LE(pipeline().status().waiting_frames, 100u);
   }
   EXPECT_EQ(outputs().size(), 900u);
-  expectPassed(0, PassReason::kEventsMissing);
+  expectPassed(0, PassReason::kTooManyWaiting);
+  EXPECT_EQ(counters().frames_passed[static_cast<std::size_t>(PassReason::kEventsMissing)], 0u);
+}
+
+TEST_F(DeblurrerTest, AFrameThatHasToGoIsDeblurredIfNothingButItsExposureIsMissing) {
+  parameters.exposure_source = ExposureSource::kTopic;
+  events(0, 1000, 0);
+  frame(40, 1);
+  exposure(20'000, 1);
+  for (int i = 0; i < 101; ++i) {
+    frame(80 + i, 2);  // their exposures are late
+  }
+  ASSERT_EQ(outputs().size(), 2u);
+  EXPECT_TRUE(output(1).deblurred) << toString(output(1).pass_reason);
+  EXPECT_EQ(output(1).exposure.length(), 20 * kMs);
 }
 
 TEST_F(DeblurrerTest, AStampFarAheadDoesNotThrowTheEventsAway) {
@@ -846,7 +860,8 @@ TEST_F(DeblurrerTest, PauseForgetsEventsAndFramesAndStartsUpAnew) {
   frame(10'040, 1);
   pipeline().pause();
   EXPECT_TRUE(outputs().empty());
-  EXPECT_EQ(counters().frames_suppressed, 1u);
+  EXPECT_EQ(counters().frames_abandoned, 1u);
+  EXPECT_EQ(counters().frames_suppressed, 0u) << "nothing was wrong with its stamp";
   EXPECT_EQ(pipeline().status().buffered_events, 0u);
   EXPECT_FALSE(pipeline().status().events_seen);
   all_events.clear();

@@ -139,6 +139,14 @@ TEST_F(NodeDiagnosticsTest, DoesNotComplainOfWhatTheUserAskedFor) {
   EXPECT_EQ(report().level, DiagnosticStatus::OK);
 }
 
+TEST_F(NodeDiagnosticsTest, DoesNotComplainOfFramesThatNobodyWaitsForAnyMore) {
+  tick();
+  now_.counters.frames_abandoned = 3;
+  const auto status = report();
+  EXPECT_EQ(status.level, DiagnosticStatus::OK) << status.message;
+  EXPECT_EQ(value(status, "Frames abandoned"), "3");
+}
+
 TEST_F(NodeDiagnosticsTest, ComplainsOfEveryKindOfLoss) {
   struct Case {
     std::uint64_t DeblurCounters::*counter;

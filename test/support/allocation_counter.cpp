@@ -1,5 +1,7 @@
 #include "support/allocation_counter.hpp"
 
+#include <malloc.h>
+
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -7,12 +9,19 @@
 namespace {
 
 std::atomic<std::uint64_t> allocation_count{0};
+std::atomic<std::int64_t> allocated_bytes{0};
 
 void* countedAllocation(std::size_t bytes, std::size_t alignment) {
   ++allocation_count;
   void* memory = nullptr;
   if (posix_memalign(&memory, alignment, bytes) != 0) throw std::bad_alloc();
+  allocated_bytes += static_cast<std::int64_t>(malloc_usable_size(memory));
   return memory;
+}
+
+void countedRelease(void* memory) {
+  allocated_bytes -= static_cast<std::int64_t>(malloc_usable_size(memory));
+  std::free(memory);
 }
 
 }  // namespace
@@ -40,22 +49,26 @@ void* operator new(std::size_t bytes, std::align_val_t alignment, const std::not
   }
 }
 void operator delete(void* memory) noexcept {
-  std::free(memory);
+  countedRelease(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
+  countedRelease(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
+  countedRelease(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
+  countedRelease(memory);
 }
 
 namespace fast_edi::testing {
 
 std::uint64_t allocationCount() {
   return allocation_count;
+}
+
+std::int64_t allocatedBytes() {
+  return allocated_bytes;
 }
 
 }  // namespace fast_edi::testing

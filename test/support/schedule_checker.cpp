@@ -132,15 +132,15 @@ std::string ScheduleChecker::countFault() const {
     return std::to_string(c.frames_in) + " frames counted, " + std::to_string(frames_.size()) +
            " came in";
   }
-  if (c.frames_in !=
-      c.frames_deblurred + c.framesPassed() + c.frames_suppressed + status.waiting_frames) {
+  if (c.frames_in != c.frames_deblurred + c.framesPassed() + c.frames_suppressed +
+                         c.frames_abandoned + status.waiting_frames) {
     return "counts of frames do not add up";
   }
   if (c.frames_deblurred + c.framesPassed() != sink_.outputs.size()) {
     return "frames counted as put out are not those that the sink got";
   }
-  if (c.frames_suppressed < gone_) {
-    return "frames without output that are not counted as suppressed";
+  if (c.frames_suppressed + c.frames_abandoned < gone_) {
+    return "frames without output that are not counted";
   }
   if (c.closes_followed + c.closes_surprise != c.frames_deblurred ||
       c.frames_still > c.frames_deblurred) {

@@ -18,8 +18,9 @@ enum class PassReason {
   kNoEventStream,    ///< start-up: no event array was ever seen
   kEventsMissing,    ///< start-up, flush, overflow, a gap or the stream's end inside the exposure
   kClocksDiffer,     ///< events do come, all of them more than a second away from the exposure
+  kTooManyWaiting,   ///< had to make room for a newer frame before its events came
 };
-constexpr std::size_t kPassReasonCount = 7;
+constexpr std::size_t kPassReasonCount = 8;
 /// A short phrase for people, e.g. "exposure unknown".
 const char* toString(PassReason reason);
 
@@ -53,6 +54,7 @@ struct DeblurCounters {
   std::uint64_t frames_timed_out = 0;  ///< closed by close_timeout with what had come
   std::array<std::uint64_t, kPassReasonCount> frames_passed{};
   std::uint64_t frames_suppressed = 0;  ///< output stamp not later than the last one: no output
+  std::uint64_t frames_abandoned = 0;   ///< waited when listening ended: no output
   std::uint64_t calibration_fits = 0;   ///< pairs of frames that the calibration learned from
   std::uint64_t calibration_holes = 0;  ///< pairs without events between their exposures
   std::uint64_t latent_images = 0;      ///< of the high-rate video

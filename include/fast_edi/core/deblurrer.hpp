@@ -72,7 +72,7 @@ class Deblurrer {
   void advance(std::int64_t now_ns);
   /// Closes all waiting frames with what has come: the end of a bag.
   void finish();
-  /// Forgets events and waiting frames (which are dropped without output, counted as suppressed):
+  /// Forgets events and waiting frames (which get no output: frames_abandoned):
   /// for the time nobody listened. The next events start up anew.
   void pause();
 
@@ -95,6 +95,8 @@ class Deblurrer {
   const DeblurParameters& parameters() const;
 
   const DeblurCounters& counters() const;
+  /// That part of status() alone, which costs nothing to know.
+  std::size_t bufferedEvents() const;
   DeblurStatus status() const;
 
  private:

@@ -26,6 +26,10 @@ class FrameNoiseFilter {
   /// \pre in and out have the size and format given at construction; they may be the same memory
   void apply(const ImageView& in, const MutableImageView& out);
 
+  std::size_t memoryBytes() const {
+    return filter_.memoryBytes() + plane_.capacity() * sizeof(float);
+  }
+
  private:
   SensorSize size_;
   PixelFormat format_;

@@ -37,6 +37,8 @@ class GainFilter {
   /// \pre every gain lies within [DoubleIntegral::kMinGain, kMaxGain]
   void apply(float* gain);
 
+  std::size_t memoryBytes() const;
+
  private:
   void despeckle();
 

@@ -33,6 +33,11 @@ class GainRestoration {
   /// \pre each lies within +-log DoubleIntegral::kMaxGain
   void apply(float* log_gain);
 
+  std::size_t memoryBytes() const {
+    return column_sums_.capacity() * sizeof(std::int32_t) +
+           (means_.capacity() + original_.capacity()) * sizeof(float);
+  }
+
  private:
   void addRow(const float* row);
   void removeRow(const float* row);

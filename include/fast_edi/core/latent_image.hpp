@@ -41,6 +41,8 @@ class LatentImage {
   void write(const ImageView& blurry, float* gain, const CameraResponse& response,
              const MutableImageView& out);
 
+  std::size_t memoryBytes() const;
+
  private:
   void fit(const ImageView& blurry);
 
