@@ -6,6 +6,9 @@
 namespace fast_edi {
 namespace {
 
+/// Jumps that one array's held events may make. More, and the rest of them are no clock's.
+constexpr int kMostHeldJumps = 2;
+
 std::int64_t timeOf(const WireEvents& events, std::size_t index) {
   return decodeWireEvent(events.record(index)).t_ns;
 }
@@ -47,12 +50,13 @@ void EventStream::take(const WireEvents& events, SensorSize size, std::uint32_t 
   if (events.empty()) {
     return;
   }
-  while (!held_.empty()) {
+  for (int jumps = 0; !held_.empty() && jumps < kMostHeldJumps; ++jumps) {
     decideHeld(timeOf(events, 0));
   }
+  dropHeld();
   markMissingArrays();  // once more: there may be a new epoch
   arrays_missing_ = false;
-  ingest(events);
+  ingest(events, true);
 }
 
 void EventStream::noteLost(std::size_t events) {
@@ -108,14 +112,16 @@ void EventStream::decideHeld(std::int64_t next_array_ns) {
   }
   const std::vector<std::uint8_t> confirmed = std::exchange(held_, {});
   beginEpoch(timeOf(viewOf(confirmed), 0));
-  ingest(viewOf(confirmed));
+  ingest(viewOf(confirmed), false);
 }
 
-void EventStream::ingest(WireEvents events) {
+/// \param may_jump whether a jump back may be taken for granted, once
+void EventStream::ingest(WireEvents events, bool may_jump) {
   while (!events.empty()) {
     const std::uint64_t first_new = lists_->endSequence();
     const std::uint64_t overflowed_before = lists_->overflowed();
     const AppendResult result = lists_->append(events);
+    records_read_ += result.read;
     counters_.events_late += result.late;
     counters_.events_outside += result.outside;
     counters_.events_overflowed += lists_->overflowed() - overflowed_before;
@@ -130,10 +136,12 @@ void EventStream::ingest(WireEvents events) {
     const TimeJump jump{lists_->newest(), result.stop == AppendStop::kForwardJump,
                         limits_.max_forward_jump_ns};
     const std::size_t run = jump.runLength(events);
+    records_read_ += run;
     if (run < events.count) {
       counters_.events_glitched += run;
       events = events.from(run);
-    } else if (!jump.forward && run > 1) {
+    } else if (may_jump && !jump.forward && run > 1) {
+      may_jump = false;  // looking ahead to the end again and again would take quadratic time
       beginEpoch(timeOf(events, 0));
     } else {
       held_.assign(events.data, events.data + events.count * kWireEventBytes);

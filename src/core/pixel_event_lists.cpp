@@ -13,6 +13,14 @@ namespace {
 
 constexpr int kMaxSide_px = 32767;         // signed 16-bit arithmetic computes pixel indices
 constexpr std::size_t kBlockEvents = 128;  // stays in the first-level cache between stages
+/// After an irregular one, blocks begin small: where irregular records come again and again, blocks
+/// that turn out to hold one cost little.
+constexpr std::size_t kSmallestBlock = 2 * kWireBlockStride;
+
+/// Unused chunks that are kept whatever was in use before.
+constexpr std::size_t kSpareChunks = 4;
+/// By one part in so many the working set shrinks with each discardBefore().
+constexpr std::size_t kWorkingSetDecay = 16;
 
 std::int64_t wireSecond(const std::uint8_t* record, std::uint32_t& second) {
   const Event event = decodeWireEvent(record);
@@ -49,12 +57,10 @@ void PixelEventLists::reset(SensorSize size, Limits limits) {
     throw std::invalid_argument("limits of the event lists must all be greater than 0");
   }
   flush();
+  block_events_ = kBlockEvents;
   size_ = size;
   limits_ = limits;
   max_chunks_ = (limits.max_events + kChunkEvents - 1) / kChunkEvents + 1;
-  while (free_chunks_.size() > max_chunks_) {
-    free_chunks_.pop_back();
-  }
   chunks_.reserve(max_chunks_);
   free_chunks_.reserve(max_chunks_);
 }
@@ -63,14 +69,16 @@ AppendResult PixelEventLists::append(const WireEvents& events) {
   AppendResult result;
   while (result.consumed < events.count) {
     const WireEvents rest = events.from(result.consumed);
-    const std::size_t regular = appendRegular(rest);
+    const std::size_t block = block_events_;
+    const std::size_t regular = appendRegular(rest, result);
     result.consumed += regular;
     result.accepted += regular;
     if (regular > 0) {
       continue;
     }
-    const std::size_t one_by_one = std::min(rest.count, kBlockEvents);
+    const std::size_t one_by_one = std::min(rest.count, block);
     for (std::size_t i = 0; i < one_by_one; ++i) {
+      ++result.read;
       result.stop = appendOne(decodeWireEvent(rest.record(i)), result);
       if (result.stop != AppendStop::kNone) {
         return result;
@@ -87,14 +95,14 @@ AppendResult PixelEventLists::append(const Event& event) {
 }
 
 /// Takes in a block if all of its records are regular; returns how many that were.
-std::size_t PixelEventLists::appendRegular(const WireEvents& events) {
+std::size_t PixelEventLists::appendRegular(const WireEvents& events, AppendResult& result) {
   // The last record of an array has nothing behind it that could be read along.
   const std::size_t readable = events.count > 0 ? events.count - 1 : 0;
   if (readable < kWireBlockStride || chunks_.empty() || !has_newest_) {
     return 0;
   }
   Chunk& chunk = *chunks_.back();
-  std::size_t count = std::min({readable, kBlockEvents, kChunkEvents - chunk.count});
+  std::size_t count = std::min({readable, block_events_, kChunkEvents - chunk.count});
   count -= count % kWireBlockStride;
   if (count == 0 || eventCount() + count > limits_.max_events) {
     return 0;
@@ -111,13 +119,17 @@ std::size_t PixelEventLists::appendRegular(const WireEvents& events) {
   block.second_dt_ns = static_cast<std::int32_t>(second_dt);
   block.previous_dt_ns = static_cast<std::int32_t>(newest_dt);
   PackedEvent* out = chunk.events + chunk.count;
+  result.read += count;
   if (!unpackRegularBlock(events.data, count, block, out)) {
+    block_events_ = kSmallestBlock;
     return 0;
   }
   const std::int64_t block_newest_ns = chunk.base_ns + out[count - 1].dt_ns;
   if (block_newest_ns - newest_ns_ > limits_.max_forward_jump_ns) {
+    block_events_ = kSmallestBlock;
     return 0;
   }
+  block_events_ = std::min(2 * block_events_, kBlockEvents);
   newest_ns_ = block_newest_ns;
   chunk.count += count;
   end_sequence_ += count;
@@ -205,10 +217,22 @@ void PixelEventLists::recycle(std::unique_ptr<Chunk> chunk) {
   free_chunks_.push_back(std::move(chunk));
 }
 
+/// Frees unused chunks beyond the working set.
+void PixelEventLists::trim() {
+  while (!free_chunks_.empty() &&
+         chunks_.size() + free_chunks_.size() > working_set_ + kSpareChunks) {
+    free_chunks_.pop_back();
+  }
+}
+
 void PixelEventLists::discardBefore(std::int64_t t_ns) {
+  const std::size_t in_use = chunks_.size();
   while (!chunks_.empty() && chunks_.front()->time(chunks_.front()->count - 1) < t_ns) {
     dropFront();
   }
+  const std::size_t decay = (working_set_ + kWorkingSetDecay - 1) / kWorkingSetDecay;
+  working_set_ = std::max(in_use, working_set_ - decay);
+  trim();
 }
 
 void PixelEventLists::flush() {
@@ -216,6 +240,8 @@ void PixelEventLists::flush() {
     recycle(std::move(chunks_.back()));
     chunks_.pop_back();
   }
+  working_set_ = 0;
+  trim();
   begin_sequence_ = end_sequence_;
   complete_from_ns_ = INT64_MIN;
   has_newest_ = false;

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/array_kinds.hpp"
 #include "support/event_generators.hpp"
 
 namespace fast_edi {
@@ -397,6 +398,41 @@ TEST_F(EventStreamTest, TheSplitIntoArraysDoesNotMatter) {
     EXPECT_EQ(c.events_late, 1u) << "arrays of " << length;
     EXPECT_EQ(split.lists()->eventCount(), kRun + 1u) << "arrays of " << length;
     EXPECT_TRUE(split.covers({kStart + 30 * kSecond, times_ns.back()}));
+  }
+}
+
+TEST_F(EventStreamTest, AnArrayWhoseTimesFallAgainAndAgainJumpsNoMoreThanACoupleOfTimes) {
+  take({kStart});
+  const std::int64_t back = kStart - 10 * kSecond;
+  held = 2;
+  take({back, back - kSecond, back - 2 * kSecond});
+  EXPECT_EQ(counters.event_time_jumps, 1u);
+  held = 0;
+  take({back - 2 * kSecond + 1});
+  EXPECT_EQ(counters.event_time_jumps, 3u);
+  EXPECT_EQ(newest(), back - 2 * kSecond + 1);
+  checkThatNothingIsLost();
+}
+
+TEST_F(EventStreamTest, TheWorkIsLinearInTheEventsWhateverTheirTimes) {
+  constexpr std::size_t kCount = 100'000;
+  constexpr std::int64_t kLateStart = 2'000'000 * kSecond;  // room to fall
+  for (std::size_t i = 0; i < testing::kArrayKindCount; ++i) {
+    const auto kind = static_cast<testing::ArrayKind>(i);
+    DeblurCounters c;
+    std::size_t jumps = 0;
+    EventStream own{{10'000'000, kBackLimit, kForwardLimit}, c, [&jumps](auto, auto) { ++jumps; }};
+    std::int64_t t_ns = kLateStart;
+    std::uint32_t number = 0;
+    for (const testing::ArrayKind next :
+         {testing::ArrayKind::kRegular, kind, kind, testing::ArrayKind::kRegular}) {
+      const auto bytes = testing::makeArray(next, kSize, kCount, t_ns + kMs);
+      const WireEvents events = testing::wireView(bytes);
+      own.take(events, kSize, ++number);
+      t_ns = decodeWireEvent(events.record(kCount - 1)).t_ns;  // each array goes on from there
+    }
+    EXPECT_LE(own.recordsRead(), EventStream::kMostReadings * c.events_in) << toString(kind);
+    EXPECT_LE(jumps, 12u) << toString(kind);
   }
 }
 

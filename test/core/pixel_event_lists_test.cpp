@@ -466,6 +466,33 @@ TEST(PixelEventLists, StaysWithinItsBoundForEver) {
   }
 }
 
+TEST(PixelEventLists, GivesBackWhatABurstTookAndKeepsASpare) {
+  constexpr std::size_t kBurst = 3'000'000;
+  constexpr std::size_t kQuiet = 1000;
+  constexpr std::size_t kSpareBytes = 4 << 20;
+  constexpr int kFrames = 100;
+  PixelEventLists lists(kSize, {});
+  append(lists, uniformEvents(kBurst, kStart, 40 * kMillisecond));
+  const std::size_t most = lists.memoryBytes();
+  ASSERT_GT(most, kBurst * sizeof(PackedEvent));
+  std::int64_t t_ns = kStart + 40 * kMillisecond;
+  std::size_t before = most;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    append(lists, uniformEvents(kQuiet, t_ns, 40 * kMillisecond));
+    lists.discardBefore(t_ns);
+    t_ns += 40 * kMillisecond;
+    EXPECT_LE(lists.memoryBytes(), before) << frame;
+    EXPECT_GE(lists.memoryBytes(), before - before / 8 - kSpareBytes / 4) << "not all at once";
+    before = lists.memoryBytes();
+  }
+  EXPECT_LE(before, kSpareBytes);
+
+  append(lists, uniformEvents(kBurst, t_ns, 40 * kMillisecond));
+  lists.flush();
+  EXPECT_LE(lists.memoryBytes(), kSpareBytes);
+  EXPECT_GT(lists.memoryBytes(), 0u);
+}
+
 TEST(PixelEventLists, AllocatesNothingInSteadyState) {
   constexpr std::size_t kPacketsPerFrame = 40;
   constexpr std::int64_t kPacketDuration = kMillisecond;

@@ -8,7 +8,11 @@
 /// jump is confirmed its events are held apart; refuted, they are dropped and counted. Confirmed,
 /// the lists are emptied and a new epoch begins with them.
 ///
-/// Cost: one PixelEventLists::append() for each array unless something is wrong with its times.
+/// An array jumps back once by itself; a second jump that lasts to its end is held apart like one
+/// ahead. Events that were held apart jump twice; what lies behind a third jump is dropped.
+///
+/// Complexity: linear in the events, whatever their times; see recordsRead(). One
+/// PixelEventLists::append() for each array unless something is wrong with its times.
 #pragma once
 
 #include <cstdint>
@@ -39,6 +43,7 @@ class EventStream {
   using BreakHandler = std::function<void(StreamBreak kind, std::int64_t next_event_ns)>;
 
   static constexpr int kMaxSide_px = 32767;
+  static constexpr std::uint64_t kMostReadings = 10;
 
   /// \param counters all events_... and event_... are counted there; must outlive this object
   EventStream(PixelEventLists::Limits limits, DeblurCounters& counters, BreakHandler before_break);
@@ -75,6 +80,9 @@ class EventStream {
   bool covers(const ExposureInterval& interval) const;
   /// Changes whenever the lists were emptied.
   std::uint64_t generation() const { return generation_; }
+  /// Records read since construction, each as often as it was: what the work is proportional to. At
+  /// most kMostReadings times the events that came.
+  std::uint64_t recordsRead() const { return records_read_; }
   /// Bytes of the lists and of events held apart.
   std::size_t memoryBytes() const;
 
@@ -82,7 +90,7 @@ class EventStream {
   void markMissingArrays();
   void setSize(SensorSize size, const WireEvents& next);
   void decideHeld(std::int64_t next_array_ns);
-  void ingest(WireEvents events);
+  void ingest(WireEvents events, bool may_jump);
   void beginEpoch(std::int64_t first_event_ns);
   void noteAccepted(std::uint64_t sequence);
   void flush();
@@ -97,6 +105,7 @@ class EventStream {
   bool arrays_missing_ = false;  ///< between the last array taken in and the next
   EventCoverage coverage_;
   std::uint64_t generation_ = 0;
+  std::uint64_t records_read_ = 0;
   std::int64_t announced_ns_ = INT64_MIN;  ///< while breaking: the event that is known to come next
 
   std::vector<std::uint8_t> held_;  ///< wire records that wait for their jump to be confirmed

@@ -19,8 +19,9 @@
 /// Complexity. append O(1) per event, discardBefore O(chunks dropped), list() O(events in window).
 /// Wins where all pixels are integrated over the same window (every frame). Loses against lists
 /// that lie apart when only few pixels of a long window are asked for: list() scans the window.
-/// Memory: 8 B per buffered event (plus at most one unused chunk), nothing per pixel; no allocation
-/// once the working set of chunks has been reached.
+/// Memory: 8 B per buffered event (plus chunks that are not full or not in use), nothing per pixel;
+/// no allocation once the working set of chunks has been reached. Chunks that a burst took are
+/// given back within some dozens of discardBefore(), or by flush(); a few stay as a spare.
 #pragma once
 
 #include <cstddef>
@@ -67,6 +68,7 @@ struct AppendResult {
   std::size_t accepted = 0;
   std::size_t late = 0;     ///< older than the newest event, within the jump limit: dropped
   std::size_t outside = 0;  ///< not on the sensor: dropped
+  std::size_t read = 0;     ///< records read, some of them twice
   AppendStop stop = AppendStop::kNone;
 };
 
@@ -134,7 +136,8 @@ class PixelEventLists {
   void makeRoom(std::size_t events);
   void dropFront();
   void recycle(std::unique_ptr<Chunk> chunk);
-  std::size_t appendRegular(const WireEvents& events);
+  void trim();
+  std::size_t appendRegular(const WireEvents& events, AppendResult& result);
   AppendStop appendOne(const Event& event, AppendResult& result);
   std::size_t chunkIndex(std::uint64_t sequence) const;
 
@@ -143,6 +146,8 @@ class PixelEventLists {
   std::size_t max_chunks_ = 0;
   std::vector<std::unique_ptr<Chunk>> chunks_;  ///< oldest first, never empty ones
   std::vector<std::unique_ptr<Chunk>> free_chunks_;
+  std::size_t working_set_ = 0;   ///< chunks that were in use at once lately
+  std::size_t block_events_ = 0;  ///< records of the next block that is taken to be regular
   std::uint64_t begin_sequence_ = 0;
   std::uint64_t end_sequence_ = 0;
   std::int64_t newest_ns_ = 0;
