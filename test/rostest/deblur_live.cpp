@@ -209,7 +209,7 @@ TEST_F(Live, StartsAnewWhenABagIsPlayedInALoop) {
   std::vector<Output> outputs;
   {
     const ChildProcess player(
-        {"rosbag", "play", "--quiet", "--wait-for-subscribers", "--loop", path});
+        {"rosrun", "rosbag", "play", "--quiet", "--wait-for-subscribers", "--loop", path});
     outputs = client_->waitForOutputs(2 * frames);
   }
   ASSERT_GE(outputs.size(), 2 * frames);

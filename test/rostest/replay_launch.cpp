@@ -12,6 +12,7 @@
 #include "rostest/expectations.hpp"
 #include "rostest/free_port.hpp"
 #include "rostest/recording.hpp"
+#include "support/command.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace fast_edi {
@@ -46,8 +47,9 @@ class ReplayLaunch : public ::testing::TestWithParam<LaunchCase> {};
 
 TEST_P(ReplayLaunch, RecordsOneOutputForEachFrame) {
   const TemporaryDirectory directory;
-  const std::string in = directory.file("in.bag");
-  const std::string out = directory.file("out.bag");
+  // What roslaunch splits at, and what a shell or XML could take for something else.
+  const std::string in = directory.file("it's \"my\" robot & $HOME [1] (ü).bag");
+  const std::string out = directory.file("it's \"my\" output & $HOME [1] (ü).bag");
   const Recording recording = makeRecording({});
   writeBag(recording, "/dvs", in);
   ChildProcess launch(
@@ -58,6 +60,18 @@ TEST_P(ReplayLaunch, RecordsOneOutputForEachFrame) {
   const std::vector<Output> outputs = readOutputs(out);
   expectOneOutputForEachFrame(recording, outputs);
   expectSameImages(outputs, deblurWithoutRos(recording, testParameters()));
+}
+
+TEST(ReplayLaunchWithoutARecorder, Ends) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.bag");
+  writeBag(makeRecording({}), "/dvs", in);
+  const auto result =
+      testing::runCommand("timeout 60 roslaunch -p " + freePort() +
+                          " " FAST_EDI_SOURCE_DIR "/launch/replay.launch bag:=" + in + " record:=" +
+                          directory.file("no/such/folder/out.bag") + " use_sim_time:=false");
+  EXPECT_NE(result.exit_code, 124) << "it waited for a recorder: " << result.output;
+  EXPECT_NE(result.output.find("REQUIRED process [dvs/record"), std::string::npos) << result.output;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ReplayLaunch,
