@@ -101,6 +101,26 @@ void writePicture(const fs::path& path, const cv::Mat& picture) {
   }
 }
 
+constexpr const char* kPage = "report.md";
+constexpr const char* kFigures = "figures.csv";
+
+/// The pictures beside a report that it shows. None when there is no report.
+std::vector<fs::path> picturesOf(const fs::path& page) {
+  std::vector<fs::path> pictures;
+  std::ifstream file(page);
+  for (std::string line; std::getline(file, line);) {
+    // As writeGroup() puts them: ![name](file.png), on a line of its own.
+    const std::size_t start = line.rfind("](");
+    if (line.rfind("![", 0) == 0 && start != std::string::npos && line.back() == ')') {
+      const fs::path name = line.substr(start + 2, line.size() - start - 3);
+      if (name == name.filename() && name.extension() == ".png") {
+        pictures.push_back(page.parent_path() / name);
+      }
+    }
+  }
+  return pictures;
+}
+
 std::ofstream openForWriting(const fs::path& path) {
   std::ofstream file(path);
   if (!file) {
@@ -282,6 +302,25 @@ void printRuntimeTable(std::ostream& out, const EvaluationGroup& group) {
   }
 }
 
+void prepareReportFolder(const std::string& folder, bool overwrite) {
+  const fs::path page = fs::path(folder) / kPage;
+  std::vector<fs::path> earlier = picturesOf(page);
+  earlier.insert(earlier.end(), {page, fs::path(folder) / kFigures});
+  for (const fs::path& path : earlier) {
+    if (!overwrite && fs::exists(path)) {
+      throw std::runtime_error("cannot write a report to " + folder + ": " + path.string() +
+                               " exists already (--force replaces it)");
+    }
+  }
+  for (const fs::path& path : earlier) {
+    std::error_code error;
+    fs::remove(path, error);
+    if (error) {
+      throw std::runtime_error("cannot remove " + path.string() + ": " + error.message());
+    }
+  }
+}
+
 std::string writeReport(const std::string& folder, const ReportText& text,
                         const std::vector<EvaluationGroup>& groups) {
   std::error_code error;
@@ -289,7 +328,7 @@ std::string writeReport(const std::string& folder, const ReportText& text,
   if (error) {
     throw std::runtime_error("cannot create folder " + folder + ": " + error.message());
   }
-  const fs::path page = fs::path(folder) / "report.md";
+  const fs::path page = fs::path(folder) / kPage;
   std::ofstream out = openForWriting(page);
   out << "# " << text.title << "\n\n";
   if (!text.command.empty()) {
@@ -307,7 +346,7 @@ std::string writeReport(const std::string& folder, const ReportText& text,
   out << "## Run time\n\nWall clock of this machine, taking in events and closing.\n\n";
   printRuntimeTable(out, all);
   closeWritten(out, page);
-  writeCsv(fs::path(folder) / "figures.csv", groups);
+  writeCsv(fs::path(folder) / kFigures, groups);
   return page.string();
 }
 

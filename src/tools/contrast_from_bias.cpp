@@ -1,7 +1,6 @@
 /// \file
 /// `contrast_from_bias`: the bias currents and contrast thresholds behind a configuration file.
 
-#include <exception>
 #include <iomanip>
 #include <iostream>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include <boost/program_options.hpp>
 
+#include "command_line.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/core/contrast_from_bias.hpp"
 
@@ -16,9 +16,7 @@ namespace {
 
 namespace po = boost::program_options;
 
-constexpr int kDone = 0;
-constexpr int kBadConfiguration = 1;
-constexpr int kBadUsage = 2;
+namespace tools = fast_edi::tools;
 
 constexpr int kNameWidth = 12;
 constexpr int kValueWidth = 8;
@@ -29,36 +27,30 @@ struct Arguments {
   std::vector<std::string> overrides;
 };
 
-void printHelp(const po::options_description& options) {
-  std::cout << "Usage: contrast_from_bias FILE.yaml [key:=value ...]\n\n"
-               "Prints the bias currents and contrast thresholds that a configuration stands for, "
-               "e.g. of\ncfg/davis346.yaml, or that the driver's own file of biases stands for. "
-               "Values given as key:=value replace those of the file, "
-               "e.g. biases/OnBn_fine:=200.\n\n"
-            << options
-            << "\nExit code: 0 thresholds printed (warnings included); 1 the configuration cannot "
-               "be used;\n2 wrong arguments.\n";
-}
-
 /// \return false when help was asked for and given
 bool parseArguments(int argc, char** argv, Arguments& arguments) {
   po::options_description visible("Options");
   visible.add_options()("help,h", "print this");
-  po::options_description all;
-  all.add(visible).add_options()("file", po::value(&arguments.file)->required())(
-      "override", po::value(&arguments.overrides));
-  po::positional_options_description positional;
-  positional.add("file", 1).add("override", -1);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
-  if (values.count("help") > 0) {
-    printHelp(visible);
+  std::vector<std::string> words;
+  auto values = tools::readCommandLine(
+      argc, argv, visible,
+      {"Usage: contrast_from_bias FILE.yaml [key:=value ...]\n\n"
+       "Prints the bias currents and contrast thresholds that a configuration stands for, "
+       "e.g. of\ncfg/davis346.yaml, or that the driver's own file of biases stands for. "
+       "Values given as key:=value replace those of the file, "
+       "e.g. biases/OnBn_fine:=200.\n",
+       "0 thresholds printed (warnings included); 1 wrong arguments, or a configuration that "
+       "cannot\nbe used."},
+      &words);
+  if (!values) {
     return false;
   }
-  if (values.count("file") == 0) {
-    throw po::error("expected a configuration file; --help tells more");
+  po::notify(*values);
+  if (words.empty()) {
+    throw po::error("expected a configuration file");
   }
-  po::notify(values);
+  arguments.file = words.front();
+  arguments.overrides.assign(words.begin() + 1, words.end());
   return true;
 }
 
@@ -124,28 +116,17 @@ void run(const Arguments& arguments) {
   const fast_edi::ContrastThresholds& thresholds = parameters.deblur.thresholds;
   printThreshold("C_ON", thresholds.on, parameters.from_biases.on);
   printThreshold("C_OFF", -thresholds.off, parameters.from_biases.off);
-  for (const std::string& warning : parameters.warnings) {
-    std::cerr << "warning: " << warning << "\n";
-  }
+  tools::printWarnings(parameters);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return tools::runTool("contrast_from_bias", [argc, argv] {
     Arguments arguments;
     if (parseArguments(argc, argv, arguments)) {
       run(arguments);
     }
-    return kDone;
-  } catch (const fast_edi::ParameterError& error) {
-    std::cerr << error.what() << "\n";
-    return kBadConfiguration;
-  } catch (const po::error& error) {
-    std::cerr << "contrast_from_bias: " << error.what() << "\n";
-    return kBadUsage;
-  } catch (const std::exception& error) {
-    std::cerr << "contrast_from_bias: " << error.what() << "\n";
-    return kBadConfiguration;
-  }
+    return tools::kDone;
+  });
 }

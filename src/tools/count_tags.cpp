@@ -83,23 +83,18 @@ struct Count {
 
 po::options_description describeOptions(Arguments& arguments) {
   po::options_description options("Options");
-  const auto text = [](std::string& target, const char* name) {
-    return po::value(&target)->default_value(target)->value_name(name);
-  };
   options.add_options()("help,h", "print this")("config",
                                                 po::value(&arguments.config)->value_name("YAML"),
                                                 "parameters, e.g. cfg/davis346.yaml")(
-      "family", text(arguments.detector.family, "NAME"), "family of the tags")(
+      "family", tools::textOption(arguments.detector.family, "NAME"), "family of the tags")(
       "decimate",
       po::value(&arguments.detector.decimate)
           ->default_value(arguments.detector.decimate)
           ->value_name("F"),
-      "tags are searched in a frame smaller by this factor")(
-      "events", text(arguments.topics.events, "TOPIC"), "event arrays")(
-      "image", text(arguments.topics.image, "TOPIC"), "frames")(
-      "exposure", text(arguments.topics.exposure, "TOPIC"),
-      "exposure lengths [us]; may be missing")("truth", text(arguments.truth_topic, "TOPIC"),
-                                               "true sharp frames; may be missing");
+      "tags are searched in a frame smaller by this factor");
+  tools::addTopicOptions(options, arguments.topics);
+  options.add_options()("truth", tools::textOption(arguments.truth_topic, "TOPIC"),
+                        "true sharp frames; may be missing");
   return options;
 }
 
@@ -107,22 +102,20 @@ po::options_description describeOptions(Arguments& arguments) {
 bool parseArguments(int argc, char** argv, Arguments& arguments) {
   const po::options_description visible = describeOptions(arguments);
   std::vector<std::string> words;
-  po::variables_map values = tools::readCommandLine(argc, argv, visible, words);
-  if (argc == 1 || values.count("help") > 0) {
-    std::cout << "Usage: count_tags BAG [options] [parameter:=value ...]\n\n"
-                 "Counts AprilTags in the frames of a recording: blurry, by plain EDI (filter:\n"
-                 "false), by this package as its parameters are, and in the true sharp frames\n"
-                 "where the recording has them. A tag is false when the true frame of its stamp\n"
-                 "does not show its id.\n\n"
-              << visible
-              << "\nExit code: 0 done; 1 failed; 2 the recording was cut short or damaged.\n";
+  auto values = tools::readCommandLine(
+      argc, argv, visible,
+      {"Usage: count_tags BAG [options] [parameter:=value ...]\n\n"
+       "Counts AprilTags in the frames of a recording: blurry, by plain EDI (filter:\n"
+       "false), by this package as its parameters are, and in the true sharp frames\n"
+       "where the recording has them. A tag is false when the true frame of its stamp\n"
+       "does not show its id.\n",
+       "0 done; 1 failed; 2 the recording was cut short or damaged."},
+      &words);
+  if (!values) {
     return false;
   }
-  po::notify(values);
-  tools::sortWords(words, arguments.bag, arguments.overrides);
-  if (arguments.bag.empty()) {
-    throw po::error("expected a BAG");
-  }
+  po::notify(*values);
+  tools::requireRecording(words, arguments.bag, arguments.overrides);
   return true;
 }
 
@@ -234,7 +227,7 @@ int run(const Arguments& arguments) {
               static_cast<unsigned long long>(counter.counters().frames_deblurred),
               static_cast<unsigned long long>(counter.counters().frames_in));
   counter.print();
-  tools::printDamage(arguments.bag, reader);
+  tools::printDamage(arguments.bag, reader.damage());
   tools::printMalformed(malformed);
   return reader.damage().empty() && malformed == 0 ? kDone : kInputIncomplete;
 }

@@ -25,10 +25,8 @@ namespace po = boost::program_options;
 namespace tools = fast_edi::tools;
 using tools::kDone;
 using tools::kInputIncomplete;
+using tools::kInterrupted;
 
-constexpr int kInterrupted = 128;  ///< plus the number of the signal, as shells have it
-/// More notes than this help nobody.
-constexpr std::size_t kMaxDamageNotes = 10;
 constexpr int kDefaultFilmRate_hz = 500;
 
 /// The signal that asked to stop, 0 before. The only thing that a signal's handler may touch.
@@ -74,50 +72,43 @@ po::options_description describeOptions(Arguments& arguments) {
       "images of the film for each second of recording; it plays 30 of them a second")(
       "config", po::value(&arguments.config)->value_name("YAML"),
       "parameters, e.g. cfg/davis346.yaml; not needed when both contrast thresholds are given as "
-      "name:=value")("events",
-                     po::value(&topics.events)->default_value(topics.events)->value_name("TOPIC"),
-                     "event arrays")(
-      "image", po::value(&topics.image)->default_value(topics.image)->value_name("TOPIC"),
-      "frames")("exposure",
-                po::value(&topics.exposure)->default_value(topics.exposure)->value_name("TOPIC"),
-                "exposure lengths [us]; may be missing")(
-      "camera-info", po::value(&topics.camera_info)->value_name("TOPIC"),
-      "calibration; the sibling of --image by default, may be missing")(
+      "name:=value");
+  tools::addTopicOptions(options, topics);
+  options.add_options()("camera-info", po::value(&topics.camera_info)->value_name("TOPIC"),
+                        "calibration; the sibling of --image by default, may be missing")(
       "output", po::value(&topics.output)->value_name("NAMESPACE"),
       "namespace of the deblurred topics; by default `deblurred` beside --image")(
       "compression", po::value(&arguments.compression)->default_value("same")->value_name("KIND"),
-      "of the output: none, bz2, lz4, or the same as the input's")(
-      "force", po::bool_switch(&arguments.overwrite), "replace outputs that exist");
+      "of the output: none, bz2, lz4, or the same as the input's");
+  tools::addForceOption(options, arguments.overwrite);
   return options;
 }
 
-void printHelp(const po::options_description& options) {
-  std::cout
-      << "Usage: deblur_bag --in IN.bag --out OUT.bag --config cfg/davis346.yaml "
-         "[options] [parameter:=value ...]\n"
-         "       deblur_bag --in IN.bag --video OUT.mp4 --fps 500 --config ...\n\n"
-         "Copies a recording and adds its deblurred frames as <image "
-         "namespace>/deblurred/image_raw and\n.../camera_info. Parameters given as name:=value "
-         "come before those of the YAML file.\n"
-         "A film shows latent images at a fixed rate, between exposures too where events bridge\n"
-         "the gap; where they do not, the nearest image is held.\n\n"
-      << options
-      << "\nThe output grows as OUT.bag.active and gets its name when it is complete. What a full "
-         "disk or\nkill -9 leaves of it can be opened after `rosbag reindex`.\n"
-         "\nExit code: 0 done; 1 failed, no output; 2 the input was cut short or damaged: all "
-         "of it that\ncould be read is in the output, which is complete and indexed; 130, 143 "
-         "interrupted by Ctrl-C\nor SIGTERM: the output is complete and indexed up to there.\n";
+tools::HelpText helpText() {
+  return {
+      "Usage: deblur_bag --in IN.bag --out OUT.bag --config cfg/davis346.yaml "
+      "[options] [parameter:=value ...]\n"
+      "       deblur_bag --in IN.bag --video OUT.mp4 --fps 500 --config ...\n\n"
+      "Copies a recording and adds its deblurred frames as <image "
+      "namespace>/deblurred/image_raw and\n.../camera_info. Parameters given as name:=value "
+      "come before those of the YAML file.\n"
+      "A film shows latent images at a fixed rate, between exposures too where events bridge\n"
+      "the gap; where they do not, the nearest image is held.\n\n"
+      "The output grows as OUT.bag.active and gets its name when it is complete. What a full "
+      "disk or\nkill -9 leaves of it can be opened after `rosbag reindex`.\n",
+      "0 done; 1 failed, no output; 2 the input was cut short or damaged: all "
+      "of it that\ncould be read is in the output, which is complete and indexed; 130, 143 "
+      "interrupted by Ctrl-C\nor SIGTERM: the output is complete and indexed up to there."};
 }
 
 /// \return false when help was asked for and given
 bool parseArguments(int argc, char** argv, Arguments& arguments) {
   const po::options_description visible = describeOptions(arguments);
-  po::variables_map values = tools::readCommandLine(argc, argv, visible, arguments.overrides);
-  if (argc == 1 || values.count("help") > 0) {
-    printHelp(visible);
+  auto values = tools::readCommandLine(argc, argv, visible, helpText(), &arguments.overrides);
+  if (!values) {
     return false;
   }
-  po::notify(values);
+  po::notify(*values);
   const std::string& kind = arguments.compression;
   if (kind != "same" && !fast_edi::isKnownCompression(kind)) {
     throw po::error("--compression " + kind + ": expected same, none, bz2 or lz4");
@@ -148,12 +139,7 @@ void printDamage(const fast_edi::BagReader& reader, const fast_edi::BagDeblurRep
   std::cerr << "warning: " << input << " (" << reader.fileSize()
             << " bytes) is cut short or damaged; its last readable message was recorded at "
             << report.last_record_time << "\n";
-  for (std::size_t i = 0; i < report.damage.size() && i < kMaxDamageNotes; ++i) {
-    std::cerr << "  at byte " << report.damage[i].offset << ": " << report.damage[i].what << "\n";
-  }
-  if (report.damage.size() > kMaxDamageNotes) {
-    std::cerr << "  and " << report.damage.size() - kMaxDamageNotes << " more places\n";
-  }
+  tools::printDamage(input, report.damage);
 }
 
 void printFilm(const fast_edi::FilmReport& film, const std::string& path) {

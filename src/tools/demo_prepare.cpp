@@ -31,6 +31,7 @@ struct Arguments {
   std::string parameters_file;
   fast_edi::TopicNames topics;
   std::vector<std::string> overrides;
+  bool overwrite = false;
 };
 
 /// \return false when help was asked for and given
@@ -42,22 +43,23 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
       "config", po::value(&arguments.config)->required(), "YAML file with the parameters")(
       "parameters-out", po::value(&arguments.parameters_file)->required(),
       "YAML file to write all parameters to, those given as name:=value included")(
-      "events", po::value(&topics.events)->default_value(topics.events))(
-      "image", po::value(&topics.image)->default_value(topics.image))(
-      "exposure", po::value(&topics.exposure)->default_value(topics.exposure))(
-      "camera-info", po::value(&topics.camera_info));
-  po::variables_map values = tools::readCommandLine(argc, argv, visible, arguments.overrides);
-  if (values.count("help") > 0) {
-    std::cout
-        << "Usage: demo_prepare --in BAG --config YAML --parameters-out YAML [options] "
-           "[parameter:=value ...]\n\n"
-           "Checks a recording and parameters, finds the topics where they have other names "
-           "than the\ndriver's, and prints its length [s] and launch/demo.launch's arguments, one "
-           "on each line.\n\n"
-        << visible;
+      "camera-info", po::value(&topics.camera_info)->value_name("TOPIC"),
+      "calibration; the sibling of --image by default, may be missing");
+  tools::addTopicOptions(visible, topics);
+  tools::addForceOption(visible, arguments.overwrite);
+  auto values = tools::readCommandLine(
+      argc, argv, visible,
+      {"Usage: demo_prepare --in BAG --config YAML --parameters-out YAML [options] "
+       "[parameter:=value ...]\n\n"
+       "Checks a recording and parameters, finds the topics where they have other names "
+       "than the\ndriver's, and prints its length [s] and launch/demo.launch's arguments, one "
+       "on each line.\n",
+       "0 done; 1 failed."},
+      &arguments.overrides);
+  if (!values) {
     return false;
   }
-  po::notify(values);
+  po::notify(*values);
   return true;
 }
 
@@ -65,10 +67,12 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
 void writeParameters(const Arguments& arguments) {
   YAML::Node root = YAML::LoadFile(arguments.config);
   fast_edi::applyOverrides(root, arguments.overrides);
-  const std::string response = root["response_file"].as<std::string>("");
-  if (!response.empty()) {
-    // It is relative to the file it was named in, which is no longer the one that is read.
-    root["response_file"] = (fs::absolute(arguments.config).parent_path() / response).string();
+  // They are relative to the file that names them, which is no longer the one that is read.
+  for (const char* key : {"response_file", "biases"}) {
+    const YAML::Node value = root[key];  // biases may be a map
+    if (value.IsDefined() && value.IsScalar() && !value.Scalar().empty()) {
+      root[key] = (fs::absolute(arguments.config).parent_path() / value.Scalar()).string();
+    }
   }
   std::ofstream file(arguments.parameters_file);
   file << root << "\n";
@@ -84,6 +88,7 @@ std::string outputNamespace(const fast_edi::TopicNames& topics) {
 }
 
 int run(const Arguments& arguments) {
+  tools::requireFree(arguments.parameters_file, arguments.overwrite);
   const fast_edi::LoadedParameters parameters =
       fast_edi::parametersFromFile(arguments.config, arguments.overrides);
   tools::printWarnings(parameters);

@@ -57,6 +57,7 @@ struct Arguments {
   std::string name;
   TopicNames topics;
   std::vector<std::string> overrides;
+  bool overwrite = false;
 };
 
 /// A frame before, after, or as it truly was.
@@ -453,21 +454,23 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
       "config", po::value(&arguments.config)->required(), "YAML file with the parameters")(
       "picture", po::value(&arguments.picture)->required(), "picture to write, e.g. out.png")(
       "name", po::value(&arguments.name), "heading of the picture")(
-      "events", po::value(&topics.events)->default_value(topics.events))(
-      "image", po::value(&topics.image)->default_value(topics.image))(
-      "exposure", po::value(&topics.exposure)->default_value(topics.exposure))(
-      "camera-info", po::value(&topics.camera_info))(
-      "truth", po::value(&arguments.truth)->default_value(arguments.truth));
-  po::variables_map values = tools::readCommandLine(argc, argv, visible, arguments.overrides);
-  if (values.count("help") > 0) {
-    std::cout << "Usage: demo_report --in BAG --live BAG --config YAML --picture PNG [options] "
-                 "[parameter:=value ...]\n\n"
-                 "Compares the frames of a recording with the deblurred ones that the nodelet "
-                 "published while it was played.\n\n"
-              << visible;
+      "camera-info", po::value(&topics.camera_info)->value_name("TOPIC"),
+      "calibration; the sibling of --image by default, may be missing")(
+      "truth", tools::textOption(arguments.truth, "TOPIC"), "true sharp frames; may be missing");
+  tools::addTopicOptions(visible, topics);
+  tools::addForceOption(visible, arguments.overwrite);
+  auto values = tools::readCommandLine(
+      argc, argv, visible,
+      {"Usage: demo_report --in BAG --live BAG --config YAML --picture PNG [options] "
+       "[parameter:=value ...]\n\n"
+       "Compares the frames of a recording with the deblurred ones that the nodelet "
+       "published while it was played.\n",
+       "0 done; 1 failed, or a frame has no output."},
+      &arguments.overrides);
+  if (!values) {
     return false;
   }
-  po::notify(values);
+  po::notify(*values);
   if (arguments.name.empty()) {
     arguments.name = arguments.bag;
   }
@@ -475,6 +478,7 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
 }
 
 int run(const Arguments& arguments) {
+  tools::requireFree(arguments.picture, arguments.overwrite);
   const LoadedParameters parameters = parametersFromFile(arguments.config, arguments.overrides);
   BagReader reader(arguments.bag);
   Report report(arguments, parameters, reader);

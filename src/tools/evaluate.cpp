@@ -51,6 +51,7 @@ struct Arguments {
   fast_edi::ScorerOptions scorer;
   fast_edi::ContrastSearchOptions search;
   std::vector<std::string> overrides;
+  bool overwrite = false;
   bool sequences = false;
   int frames = fast_edi::kSequenceFrames;
   int seeds = fast_edi::kSequenceSeeds;
@@ -69,18 +70,17 @@ po::options_description describeOptions(Arguments& arguments) {
   fast_edi::ScorerOptions& scorer = arguments.scorer;
   po::options_description options("Options");
   auto add = options.add_options();
-  const auto text = [](std::string& target, const char* name) {
-    return po::value(&target)->default_value(target)->value_name(name);
-  };
+  using tools::textOption;
   add("help,h", "print this");
-  add("output,o", text(arguments.output, "FOLDER"), "where report.md, figures.csv and pictures go");
+  add("output,o", textOption(arguments.output, "FOLDER"),
+      "where report.md, figures.csv and pictures go");
   add("config", po::value(&arguments.config)->value_name("YAML"),
       "parameters of the package's own output, e.g. cfg/davis346.yaml; not needed with --sequences "
       "or when both contrast thresholds are given as name:=value");
-  add("sseq-model", text(scorer.sseq_folder, "FOLDER"),
+  add("sseq-model", textOption(scorer.sseq_folder, "FOLDER"),
       "SSEQ model: class.libsvm, regression_1..5.libsvm, feature_range.txt; without it no SSEQ");
-  add("brisque-model", text(scorer.brisque_model_file, "FILE"), "BRISQUE model");
-  add("brisque-range", text(scorer.brisque_range_file, "FILE"), "BRISQUE feature ranges");
+  add("brisque-model", textOption(scorer.brisque_model_file, "FILE"), "BRISQUE model");
+  add("brisque-range", textOption(scorer.brisque_range_file, "FILE"), "BRISQUE feature ranges");
   add("full-reference-only", po::bool_switch(&scorer.full_reference_only),
       "PSNR and SSIM alone: fast");
   add("skip",
@@ -95,14 +95,12 @@ po::options_description describeOptions(Arguments& arguments) {
       "searched contrast: smallest threshold [natural log]");
   add("search-high", threshold(arguments.search.high),
       "searched contrast: largest threshold [natural log]");
+  tools::addForceOption(options, arguments.overwrite);
 
   po::options_description recording("Recordings");
   auto add_recording = recording.add_options();
-  add_recording("events", text(topics.events, "TOPIC"), "event arrays");
-  add_recording("image", text(topics.image, "TOPIC"), "frames");
-  add_recording("exposure", text(topics.exposure, "TOPIC"),
-                "exposure lengths [us]; may be missing");
-  add_recording("truth", text(arguments.truth_topic, "TOPIC"),
+  tools::addTopicOptions(recording, topics);
+  add_recording("truth", textOption(arguments.truth_topic, "TOPIC"),
                 "true sharp frames, stamped mid-exposure; may be missing");
 
   po::options_description simulated("Simulated sequences");
@@ -127,16 +125,16 @@ po::options_description describeOptions(Arguments& arguments) {
   return options;
 }
 
-void printHelp(const po::options_description& options) {
-  std::cout
-      << "Usage: evaluate BAG [options] [parameter:=value ...]\n"
-         "       evaluate --sequences [options] [parameter:=value ...]\n\n"
-         "Compares the blurry input, plain EDI, counter EDI, EDI with the contrast found by\n"
-         "sharpness, and the package's own output: table on standard output, report with\n"
-         "pictures in a folder. Parameters given as name:=value come before the YAML file's.\n"
-         "Latent images are taken at mid-exposure. Colour is turned to grey first; raw Bayer\n"
-         "frames are measured as they are.\n\n"
-      << options << "\nExit code: 0 done; 1 failed; 2 the recording was cut short or damaged.\n";
+tools::HelpText helpText() {
+  return {
+      "Usage: evaluate BAG [options] [parameter:=value ...]\n"
+      "       evaluate --sequences [options] [parameter:=value ...]\n\n"
+      "Compares the blurry input, plain EDI, counter EDI, EDI with the contrast found by\n"
+      "sharpness, and the package's own output: table on standard output, report with\n"
+      "pictures in a folder. Parameters given as name:=value come before the YAML file's.\n"
+      "Latent images are taken at mid-exposure. Colour is turned to grey first; raw Bayer\n"
+      "frames are measured as they are. --force removes the earlier report of a folder.\n",
+      "0 done; 1 failed; 2 the recording was cut short or damaged."};
 }
 
 /// \return false when help was asked for and given
@@ -145,12 +143,11 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   arguments.truth_topic = "/dvs/ground_truth/image_raw";
   const po::options_description visible = describeOptions(arguments);
   std::vector<std::string> words;
-  po::variables_map values = tools::readCommandLine(argc, argv, visible, words);
-  if (argc == 1 || values.count("help") > 0) {
-    printHelp(visible);
+  auto values = tools::readCommandLine(argc, argv, visible, helpText(), &words);
+  if (!values) {
     return false;
   }
-  po::notify(values);
+  po::notify(*values);
   tools::sortWords(words, arguments.bag, arguments.overrides);
   if (arguments.sequences != arguments.bag.empty()) {
     throw po::error("expected either a BAG or --sequences");
@@ -158,7 +155,7 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   if (arguments.scorer.first_frames_unscored < 0) {
     throw po::error("--skip: expected 0 or more frames");
   }
-  if (values.count("video") > 0 && !arguments.sequences) {
+  if (values->count("video") > 0 && !arguments.sequences) {
     throw po::error("--video goes with --sequences, whose truth is known at any time");
   }
   if (!(arguments.threshold_factor > 0.0)) {
@@ -351,7 +348,7 @@ int evaluateBag(const Arguments& arguments, const fast_edi::DeblurParameters& pa
                                      {"Evaluation of " + evaluation.name, arguments.command, notes},
                                      groups)
             << "\n";
-  tools::printDamage(arguments.bag, reader);
+  tools::printDamage(arguments.bag, reader.damage());
   tools::printMalformed(malformed);
   return reader.damage().empty() && malformed == 0 ? kDone : kInputIncomplete;
 }
@@ -425,6 +422,7 @@ int run(const Arguments& arguments) {
   if (arguments.video_images != 0) {
     return evaluateVideo(arguments, parameters.deblur);
   }
+  fast_edi::prepareReportFolder(arguments.output, arguments.overwrite);
   return arguments.sequences ? evaluateSequences(arguments, parameters.deblur)
                              : evaluateBag(arguments, parameters.deblur);
 }

@@ -1,11 +1,11 @@
 /// \file
 /// `list_parameters`: every key of a configuration, its range, unit and default.
 
-#include <exception>
 #include <iostream>
 
 #include <boost/program_options.hpp>
 
+#include "command_line.hpp"
 #include "fast_edi/config/parameter_table.hpp"
 #include "fast_edi/config/tag_detector_parameters.hpp"
 
@@ -13,8 +13,7 @@ namespace {
 
 namespace po = boost::program_options;
 
-constexpr int kDone = 0;
-constexpr int kBadUsage = 2;
+namespace tools = fast_edi::tools;
 
 void printText(const std::vector<fast_edi::ParameterDescription>& descriptions) {
   for (const fast_edi::ParameterDescription& key : descriptions) {
@@ -47,26 +46,22 @@ void print(bool markdown) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return tools::runTool("list_parameters", [argc, argv] {
     po::options_description options("Options");
     bool markdown = false;
     options.add_options()("help,h", "print this")("markdown", po::bool_switch(&markdown),
                                                   "as the tables of the documents");
-    po::variables_map values;
-    po::store(po::parse_command_line(argc, argv, options), values);
-    po::notify(values);
-    if (values.count("help") > 0) {
-      std::cout
-          << "Usage: list_parameters [--markdown]\n\n"
-             "Lists the parameters of the nodelet and of the YAML files in cfg/. Those called\n"
-             "live can be changed while frames are deblurred.\n\n"
-          << options << "\nExit code: 0 done; 2 wrong arguments.\n";
-      return kDone;
+    tools::HelpText text{
+        "Usage: list_parameters [--markdown]\n\n"
+        "Lists the parameters of the nodelet and of the YAML files in cfg/. Those called\n"
+        "live can be changed while frames are deblurred.\n",
+        "0 done; 1 wrong arguments."};
+    text.needs_arguments = false;
+    auto values = tools::readCommandLine(argc, argv, options, text, nullptr);
+    if (values) {
+      po::notify(*values);
+      print(markdown);
     }
-    print(markdown);
-    return kDone;
-  } catch (const po::error& error) {
-    std::cerr << "list_parameters: " << error.what() << "\n";
-    return kBadUsage;
-  }
+    return tools::kDone;
+  });
 }

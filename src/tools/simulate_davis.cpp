@@ -26,6 +26,7 @@
 #include <boost/program_options.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "command_line.hpp"
 #include "fast_edi/ros/bag_writer.hpp"
 #include "fast_edi/ros/event_array.hpp"
 #include "fast_edi/simulation/davis_simulator.hpp"
@@ -46,6 +47,7 @@ using fast_edi::SimulatedInterval;
 using fast_edi::SimulationSettings;
 namespace encodings = sensor_msgs::image_encodings;
 namespace po = boost::program_options;
+namespace tools = fast_edi::tools;
 
 /// When messages reach the recorder: a frame leaves the camera when its readout has ended, an event
 /// array when USB has delivered its last packet.
@@ -428,7 +430,9 @@ int run(int argc, char** argv) {
   po::options_description output("Recording");
   output.add_options()("help,h", "print this text");
   output.add_options()("out,o", po::value<std::string>()->value_name("PATH"), "bag to write");
-  output.add_options()("overwrite", "replace the bag if it exists");
+  bool overwrite_by_old_name = false;
+  tools::addForceOption(output, options.overwrite);
+  output.add_options()("overwrite", po::bool_switch(&overwrite_by_old_name), "old name of --force");
   addOption(output, "compression", options.compression, "none, bz2 or lz4");
   addOption(output, "namespace", options.name_space, "namespace of all topics");
   addOption(output, "encoding", options.encoding, "mono8, mono16, bayer_rggb8, rgb8 or bgr8");
@@ -529,23 +533,22 @@ int run(int argc, char** argv) {
   faults.add_options()("fault", po::value<std::vector<std::string>>()->value_name("NAME[=X]"),
                        describeFaults().c_str());
 
-  po::options_description all(
-      "simulate_davis --out PATH [options]\n"
-      "Simulates a DAVIS moving over a textured plane and writes events, blurry frames, exposure\n"
-      "times and true sharp frames (at mid-exposure) as davis_ros_driver would have recorded "
-      "them.\n"
-      "In a room also IMU readings and true poses: world with z up, camera and IMU at one place "
-      "in\n"
-      "the optical frame (x right, y down, z forward), with the same pose at the start and the "
-      "end");
+  po::options_description all;
   all.add(output).add(scene).add(timing).add(room).add(pixels).add(faults);
-
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).run(), values);
-  if (values.count("help") != 0) {
-    std::cout << all;
-    return 0;
+  auto given = tools::readCommandLine(
+      argc, argv, all,
+      {"Usage: simulate_davis --out PATH [options]\n\n"
+       "Simulates a DAVIS moving over a textured plane and writes events, blurry frames, exposure\n"
+       "times and true sharp frames (at mid-exposure) as davis_ros_driver would have recorded "
+       "them.\nIn a room also IMU readings and true poses: world with z up, camera and IMU at one "
+       "place in\nthe optical frame (x right, y down, z forward), with the same pose at the start "
+       "and the end.\n",
+       "0 done; 1 failed, no output."},
+      nullptr);
+  if (!given) {
+    return tools::kDone;
   }
+  po::variables_map& values = *given;
   // Presets first, so that single options can change them.
   if (values.count("noise") != 0) noise = values["noise"].as<std::string>();
   if (values.count("sensor") != 0) sensor = values["sensor"].as<std::string>();
@@ -575,7 +578,7 @@ int run(int argc, char** argv) {
       fast_edi::plantFault(fault, options.faults);
     }
   }
-  options.overwrite = values.count("overwrite") != 0;
+  options.overwrite = options.overwrite || overwrite_by_old_name;
   options.exposure_topic = values.count("no-exposure") == 0;
   options.camera_info_topic = values.count("no-camera-info") == 0;
   options.ground_truth_topic = values.count("no-ground-truth") == 0;
@@ -592,24 +595,17 @@ int run(int argc, char** argv) {
   if (values.count("out") == 0) throw std::invalid_argument("--out: expected the bag to write");
   options.path = values["out"].as<std::string>();
   simulate(settings, options);
-  return 0;
+  return tools::kDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  constexpr int kFailure = 1;
-  constexpr int kUsageError = 2;
-  try {
-    return run(argc, argv);
-  } catch (const po::error& error) {
-    std::cerr << "simulate_davis: " << error.what() << "; see --help\n";
-    return kUsageError;
-  } catch (const std::invalid_argument& error) {
-    std::cerr << "simulate_davis: " << error.what() << "; see --help\n";
-    return kUsageError;
-  } catch (const std::exception& error) {
-    std::cerr << "simulate_davis: " << error.what() << '\n';
-    return kFailure;
-  }
+  return tools::runTool("simulate_davis", [argc, argv] {
+    try {
+      return run(argc, argv);
+    } catch (const std::invalid_argument& error) {  // a setting out of its range
+      throw po::error(error.what());
+    }
+  });
 }

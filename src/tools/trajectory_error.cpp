@@ -40,51 +40,51 @@ struct Arguments {
   std::string alignment = "yaw";
   std::string plot;
   double max_gap_s = 0.5;
+  bool overwrite = false;
 };
 
 po::options_description describeOptions(Arguments& arguments) {
   po::options_description options("Options");
   auto add = options.add_options();
-  const auto text = [](std::string& target, const char* name) {
-    return po::value(&target)->default_value(target)->value_name(name);
-  };
+  using tools::textOption;
   add("help,h", "print this");
-  add("estimate", text(arguments.estimate, "TOPIC"), "estimated poses");
-  add("truth", text(arguments.truth, "TOPIC"), "true poses");
+  add("estimate", textOption(arguments.estimate, "TOPIC"), "estimated poses");
+  add("truth", textOption(arguments.truth, "TOPIC"), "true poses");
   add("truth-bag", po::value(&arguments.truth_bag)->value_name("BAG"),
       "where the true poses are; the same bag by default");
-  add("align", text(arguments.alignment, "HOW"),
+  add("align", textOption(arguments.alignment, "HOW"),
       "what the estimate is laid over the truth by: yaw (translation and rotation about z), se3 "
       "(any rotation) or sim3 (scale too)");
   add("gap",
       po::value(&arguments.max_gap_s)->default_value(arguments.max_gap_s, "0.5")->value_name("S"),
       "a longer pause between two estimates counts as a reset [s]");
   add("plot", po::value(&arguments.plot)->value_name("PNG"), "draw both from above");
+  tools::addForceOption(options, arguments.overwrite);
   return options;
 }
 
 /// \return false when help was asked for and given
 bool parseArguments(int argc, char** argv, Arguments& arguments) {
   const po::options_description visible = describeOptions(arguments);
-  po::options_description all;
-  all.add(visible).add_options()("bag", po::value(&arguments.bag));
-  po::positional_options_description positional;
-  positional.add("bag", 1);
-  po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), values);
-  if (argc == 1 || values.count("help") > 0) {
-    std::cout << "Usage: trajectory_error BAG [options]\n\n"
-                 "Compares recorded odometry with true poses, by the stamps of their headers:\n"
-                 "absolute trajectory error after one alignment of the whole, drift at the end\n"
-                 "(where the estimate went from its first to its last pose, against the truth),\n"
-                 "and for how long there was an estimate. Poses are nav_msgs/Odometry,\n"
-                 "geometry_msgs/PoseStamped or geometry_msgs/PoseWithCovarianceStamped.\n\n"
-              << visible << "\nExit code: 0 done; 1 failed; 2 a bag was cut short or damaged.\n";
+  std::vector<std::string> words;
+  auto values = tools::readCommandLine(
+      argc, argv, visible,
+      {"Usage: trajectory_error BAG [options]\n\n"
+       "Compares recorded odometry with true poses, by the stamps of their headers:\n"
+       "absolute trajectory error after one alignment of the whole, drift at the end\n"
+       "(where the estimate went from its first to its last pose, against the truth),\n"
+       "and for how long there was an estimate. Poses are nav_msgs/Odometry,\n"
+       "geometry_msgs/PoseStamped or geometry_msgs/PoseWithCovarianceStamped.\n",
+       "0 done; 1 failed; 2 a bag was cut short or damaged."},
+      &words);
+  if (!values) {
     return false;
   }
-  po::notify(values);
-  if (arguments.bag.empty()) {
-    throw po::error("expected a BAG");
+  po::notify(*values);
+  std::vector<std::string> overrides;
+  tools::requireRecording(words, arguments.bag, overrides);
+  if (!overrides.empty()) {
+    throw po::error("takes no parameters, got " + overrides.front());
   }
   if (!(arguments.max_gap_s > 0.0)) {
     throw po::error("--gap: expected more than 0 s");
@@ -157,7 +157,7 @@ std::vector<TimedPosition> readPositions(const std::string& path, const std::str
       incomplete = true;
     }
   }
-  tools::printDamage(path, reader);
+  tools::printDamage(path, reader.damage());
   incomplete = incomplete || !reader.damage().empty();
   if (positions.empty()) {
     throw fast_edi::BagError(path + ": no poses on " + topic);
@@ -166,6 +166,9 @@ std::vector<TimedPosition> readPositions(const std::string& path, const std::str
 }
 
 int run(const Arguments& arguments) {
+  if (!arguments.plot.empty()) {
+    tools::requireFree(arguments.plot, arguments.overwrite);
+  }
   fast_edi::TrajectoryComparison comparison;
   comparison.alignment = fast_edi::trajectoryAlignmentFromName(arguments.alignment);
   comparison.max_gap_ns = static_cast<std::int64_t>(

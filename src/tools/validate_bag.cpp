@@ -34,9 +34,8 @@ namespace {
 namespace fs = std::filesystem;
 namespace po = boost::program_options;
 namespace tools = fast_edi::tools;
-
-constexpr int kSound = 0;
-constexpr int kFindings = 2;
+using tools::kDone;
+using tools::kFindings;
 
 struct Arguments {
   std::string bag;
@@ -44,6 +43,7 @@ struct Arguments {
   std::string output;
   fast_edi::TopicNames topics;
   std::vector<std::string> overrides;
+  bool overwrite = false;
 };
 
 /// \return false when help was asked for and given
@@ -55,30 +55,23 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
       "parameters that the recording is held against, e.g. cfg/davis346.yaml; without one, "
       "thresholds are not judged")("output", po::value(&arguments.output)->value_name("FOLDER"),
                                    "folder for a plot of the agreement of frames and events over "
-                                   "the shift of the exposures")(
-      "events", po::value(&topics.events)->default_value(topics.events)->value_name("TOPIC"),
-      "event arrays")("image",
-                      po::value(&topics.image)->default_value(topics.image)->value_name("TOPIC"),
-                      "frames")(
-      "exposure", po::value(&topics.exposure)->default_value(topics.exposure)->value_name("TOPIC"),
-      "exposure lengths [us]; may be missing");
+                                   "the shift of the exposures");
+  tools::addTopicOptions(visible, topics);
+  tools::addForceOption(visible, arguments.overwrite);
   std::vector<std::string> words;
-  po::variables_map values = tools::readCommandLine(argc, argv, visible, words);
-  if (argc == 1 || values.count("help") > 0) {
-    std::cout
-        << "Usage: validate_bag BAG [--config cfg/davis346.yaml] [options] [parameter:=value "
-           "...]\n\n"
-           "Looks through a recording for what breaks deblurring. For each finding it prints what\n"
-           "was expected, what was found and what to set, and at the end lines for a YAML file.\n"
-           "Topics of other names are taken when they are the only ones of their type.\n\n"
-        << visible << "\nExit code: 0 no findings; 1 failed; 2 findings.\n";
+  auto values = tools::readCommandLine(
+      argc, argv, visible,
+      {"Usage: validate_bag BAG [--config cfg/davis346.yaml] [options] [parameter:=value ...]\n\n"
+       "Looks through a recording for what breaks deblurring. For each finding it prints what\n"
+       "was expected, what was found and what to set, and at the end lines for a YAML file.\n"
+       "Topics of other names are taken when they are the only ones of their type.\n",
+       "0 no findings; 1 failed; 2 findings."},
+      &words);
+  if (!values) {
     return false;
   }
-  po::notify(values);
-  tools::sortWords(words, arguments.bag, arguments.overrides);
-  if (arguments.bag.empty()) {
-    throw po::error("expected a BAG");
-  }
+  po::notify(*values);
+  tools::requireRecording(words, arguments.bag, arguments.overrides);
   return true;
 }
 
@@ -174,8 +167,12 @@ void addFileFindings(const PassResult& pass, std::vector<fast_edi::Finding>& fin
   }
 }
 
-void drawCurve(const std::string& folder, const fast_edi::TimingEstimate& timing) {
-  fs::create_directories(folder);
+std::string curvePath(const Arguments& arguments) {
+  return (fs::path(arguments.output) / "shift.png").string();
+}
+
+void drawCurve(const std::string& path, const fast_edi::TimingEstimate& timing) {
+  fs::create_directories(fs::path(path).parent_path());
   if (timing.curve.empty()) {
     std::cerr << "warning: nothing to draw: " << timing.why_not << "\n";
     return;
@@ -186,7 +183,6 @@ void drawCurve(const std::string& folder, const fast_edi::TimingEstimate& timing
     correlation.values.emplace_back(point.correlation);
     cost.values.emplace_back(point.cost);
   }
-  const std::string path = (fs::path(folder) / "shift.png").string();
   const cv::Mat plot = fast_edi::linePlot(
       {"Agreement of frames and events over the shift of the exposures",
        fast_edi::textOf("from %.1f ms to %.1f ms behind the stamps",
@@ -200,6 +196,9 @@ void drawCurve(const std::string& folder, const fast_edi::TimingEstimate& timing
 }
 
 int run(const Arguments& arguments) {
+  if (!arguments.output.empty()) {
+    tools::requireFree(curvePath(arguments), arguments.overwrite);
+  }
   const fast_edi::AssumedParameters assumed = assumedParameters(arguments);
   fast_edi::TopicNames topics = arguments.topics;
   topics.output = "/validate_bag";  // writes none: topics of deblurred frames may be there already
@@ -231,9 +230,9 @@ int run(const Arguments& arguments) {
   addFileFindings(pass, report.findings);
   fast_edi::printReport(std::cout, validator.survey(), report);
   if (!arguments.output.empty()) {
-    drawCurve(arguments.output, report.timing);
+    drawCurve(curvePath(arguments), report.timing);
   }
-  return report.findings.empty() ? kSound : kFindings;
+  return report.findings.empty() ? kDone : kFindings;
 }
 
 }  // namespace
@@ -241,6 +240,6 @@ int run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   return tools::runTool("validate_bag", [argc, argv] {
     Arguments arguments;
-    return parseArguments(argc, argv, arguments) ? run(arguments) : kSound;
+    return parseArguments(argc, argv, arguments) ? run(arguments) : kDone;
   });
 }

@@ -64,6 +64,24 @@ TEST_F(EvaluateTest, ARecordingWithTruthGivesTableAndPage) {
   EXPECT_TRUE(std::filesystem::exists(directory_.file("report/example_short_bag.png")));
 }
 
+TEST_F(EvaluateTest, ReplacesAReportOnlyWhenToldAndThenAllOfIt) {
+  const std::string options = simulate() + kThresholds + " --full-reference-only";
+  ASSERT_EQ(evaluate(options).exit_code, 0);
+  std::ofstream(directory_.file("report/notes.txt")) << "mine";
+  const std::string other = directory_.file("other.bag");
+  std::filesystem::copy_file(directory_.file("short.bag"), other);
+  const std::string other_options = other + kThresholds + " --full-reference-only";
+  const CommandResult refused = evaluate(other_options);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output, HasSubstr("exists already (--force replaces it)"));
+  EXPECT_THAT(contentOf(directory_.file("report/report.md")), HasSubstr("short.bag"));
+  ASSERT_EQ(evaluate(other_options + " --force").exit_code, 0);
+  EXPECT_THAT(contentOf(directory_.file("report/report.md")), HasSubstr("other.bag"));
+  EXPECT_FALSE(std::filesystem::exists(directory_.file("report/example_short_bag.png")));
+  EXPECT_TRUE(std::filesystem::exists(directory_.file("report/example_other_bag.png")));
+  EXPECT_TRUE(std::filesystem::exists(directory_.file("report/notes.txt")));
+}
+
 TEST_F(EvaluateTest, WithoutTruthItSaysSo) {
   const CommandResult result =
       evaluate(simulate() + kThresholds + " --truth /none --full-reference-only");

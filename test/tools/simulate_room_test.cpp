@@ -110,7 +110,7 @@ TEST(SimulateRoomTool, NamesWhatItCannotDo) {
   const std::string command = kTool + "--out " + directory.file("a.bag");
   const auto outputOf = [&](const std::string& options) {
     const auto result = testing::runCommand(command + " " + options);
-    EXPECT_EQ(result.exit_code, 2) << options;
+    EXPECT_EQ(result.exit_code, 1) << options;
     return result.output;
   };
   EXPECT_THAT(outputOf("--scene room --duration 1 --frames 20"),

@@ -24,7 +24,7 @@ class ValidateBagTest : public ::testing::Test {
   std::string simulate(const std::string& options) {
     const std::string bag = directory_.file("recording.bag");
     const CommandResult result = runCommand(
-        kTools + "simulate_davis --overwrite --no-ground-truth --frames 9 --width 96 " +
+        kTools + "simulate_davis --force --no-ground-truth --frames 9 --width 96 " +
         "--height 72 --motion pan --texture natural --seed 3 --out " + bag + " " + options);
     EXPECT_EQ(result.exit_code, 0) << result.output;
     return bag;

@@ -35,6 +35,12 @@ struct ReportText {
   std::vector<std::string> notes;  ///< what the reader must know, e.g. measures not to be had
 };
 
+/// Makes room for a report, so that no folder holds parts of two.
+/// \param overwrite remove the report that is there: report.md, the pictures that it shows, and
+///        figures.csv
+/// \throws std::runtime_error when there is one that is not to be replaced, or cannot be removed
+void prepareReportFolder(const std::string& folder, bool overwrite);
+
 /// Writes report.md, figures.csv and PNG pictures into \p folder, which is created when missing.
 /// Members are shown one by one when a group has more than one.
 /// \return the path of report.md

@@ -1,0 +1,163 @@
+#include "command_line.hpp"
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <stdexcept>
+
+#include <yaml-cpp/yaml.h>
+
+namespace fast_edi {
+namespace tools {
+namespace {
+
+namespace po = boost::program_options;
+
+/// More notes than this help nobody.
+constexpr std::size_t kMaxDamageNotes = 10;
+constexpr const char* kWord = "word";
+
+void printHelp(const po::options_description& options, const HelpText& text) {
+  std::cout << text.usage << "\n" << options << "\nExit code: " << text.exit_codes << "\n";
+}
+
+void refuseEmptyValues(const po::parsed_options& parsed) {
+  for (const po::option& option : parsed.options) {
+    for (const std::string& value : option.value) {
+      if (value.empty()) {
+        throw po::error(option.string_key == kWord ? "an argument is empty"
+                                                   : "--" + option.string_key + " is empty");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+po::typed_value<std::string>* textOption(std::string& target, const char* name) {
+  return po::value(&target)->default_value(target)->value_name(name);
+}
+
+void addForceOption(po::options_description& options, bool& overwrite) {
+  options.add_options()("force", po::bool_switch(&overwrite), "replace outputs that exist");
+}
+
+void addTopicOptions(po::options_description& options, TopicNames& topics) {
+  options.add_options()("events", textOption(topics.events, "TOPIC"), "event arrays")(
+      "image", textOption(topics.image, "TOPIC"), "frames")(
+      "exposure", textOption(topics.exposure, "TOPIC"), "exposure lengths [us]; may be missing");
+}
+
+std::optional<po::variables_map> readCommandLine(int argc, char** argv,
+                                                 const po::options_description& options,
+                                                 const HelpText& text,
+                                                 std::vector<std::string>* words) {
+  if (argc <= 1 && text.needs_arguments) {
+    throw po::error("called without arguments");
+  }
+  po::options_description all;
+  all.add(options).add_options()(kWord, po::value<std::vector<std::string>>());
+  po::positional_options_description positional;
+  positional.add(kWord, -1);
+  const po::parsed_options parsed =
+      po::command_line_parser(argc, argv).options(all).positional(positional).run();
+  po::variables_map values;
+  po::store(parsed, values);
+  if (values.count("help") > 0) {
+    printHelp(options, text);
+    return std::nullopt;
+  }
+  refuseEmptyValues(parsed);
+  if (values.count(kWord) > 0) {
+    const auto& given = values[kWord].as<std::vector<std::string>>();
+    if (words == nullptr) {
+      throw po::error("expected options only, got \"" + given.front() + "\"");
+    }
+    *words = given;
+  }
+  return values;
+}
+
+void sortWords(const std::vector<std::string>& words, std::string& bag,
+               std::vector<std::string>& overrides) {
+  for (const std::string& word : words) {
+    if (word.find(":=") != std::string::npos) {
+      overrides.push_back(word);
+    } else if (bag.empty()) {
+      bag = word;
+    } else {
+      throw po::error("one recording at a time, got " + bag + " and " + word);
+    }
+  }
+}
+
+void requireRecording(const std::vector<std::string>& words, std::string& bag,
+                      std::vector<std::string>& overrides) {
+  sortWords(words, bag, overrides);
+  if (bag.empty()) {
+    throw po::error("expected a BAG");
+  }
+}
+
+void requireFree(const std::string& path, bool overwrite) {
+  namespace fs = std::filesystem;
+  if (fs::is_directory(path)) {
+    throw std::runtime_error("cannot write " + path + ": it is a directory");
+  }
+  if (!overwrite && fs::exists(path)) {
+    throw std::runtime_error("cannot write " + path + ": it exists already (--force replaces it)");
+  }
+}
+
+LoadedParameters loadParameters(const std::string& config,
+                                const std::vector<std::string>& overrides) {
+  if (!config.empty()) {
+    return parametersFromFile(config, overrides);
+  }
+  YAML::Node root(YAML::NodeType::Map);
+  applyOverrides(root, overrides);
+  return parametersFromYaml(root, ".");
+}
+
+void printWarnings(const LoadedParameters& parameters) {
+  for (const std::string& warning : parameters.warnings) {
+    std::cerr << "warning: " << warning << "\n";
+  }
+}
+
+void printDamage(const std::string& path, const std::vector<BagDamage>& damage) {
+  for (std::size_t i = 0; i < damage.size() && i < kMaxDamageNotes; ++i) {
+    std::cerr << "warning: " << path << ", at byte " << damage[i].offset << ": " << damage[i].what
+              << "\n";
+  }
+  if (damage.size() > kMaxDamageNotes) {
+    std::cerr << "warning: " << path << ": " << damage.size() - kMaxDamageNotes
+              << " more damaged places\n";
+  }
+}
+
+void printMalformed(std::uint64_t messages) {
+  if (messages > 0) {
+    std::cerr << "warning: " << messages << " messages contradict themselves and were not used\n";
+  }
+}
+
+int runTool(const std::string& name, const std::function<int()>& work) {
+  try {
+    const int code = work();
+    std::cout.flush();
+    if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw std::runtime_error("standard output cannot be written");
+    }
+    return code;
+  } catch (const po::error& error) {
+    std::cerr << name << ": " << error.what() << " (see --help)\n";
+  } catch (const std::exception& error) {
+    std::cerr << name << ": " << error.what() << "\n";
+  }
+  return kFailed;
+}
+
+}  // namespace tools
+}  // namespace fast_edi
