@@ -61,11 +61,13 @@ FilmWriter::FilmWriter(const std::string& path, int rate_hz, bool overwrite)
     throw FilmError("cannot write " + path_ + ": its name ends in \"" + extensionOf(path_) +
                     "\", expected .mp4, .mov or .avi");
   }
-  if (!overwrite && fs::exists(path_)) {
-    throw FilmError("cannot write " + path_ + ": it exists already (--force replaces it)");
-  }
-  if (fs::is_directory(path_)) {
-    throw FilmError("cannot write " + path_ + ": it is a directory");
+  for (const std::string& output : {path_, active_path_}) {
+    if (!overwrite && fs::exists(output)) {
+      throw FilmError("cannot write " + output + ": it exists already (--force replaces it)");
+    }
+    if (fs::is_directory(output)) {
+      throw FilmError("cannot write " + output + ": it is a directory");
+    }
   }
   const std::string fault = writingFault(active_path_);
   if (!fault.empty()) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
@@ -140,6 +141,17 @@ TEST_F(FilmWriterTest, SaysWhyItCannotWrite) {
   EXPECT_THAT(open("film.mp4", false), HasSubstr("exists already (--force replaces it)"));
   EXPECT_EQ(open("film.mp4", true), "no error");
   EXPECT_THAT(readBack(), ElementsAre(50)) << "replaced before the new one was complete";
+}
+
+TEST_F(FilmWriterTest, KeepsAnUnfinishedFilmOfAnotherProgramUnlessTold) {
+  std::ofstream(path("film.active.mp4")) << "another film";
+  EXPECT_THAT(messageOf([&] { FilmWriter(path(), kRate_hz, false); }),
+              HasSubstr("film.active.mp4: it exists already (--force replaces it)"));
+  std::ifstream file(path("film.active.mp4"));
+  std::string content;
+  std::getline(file, content);
+  EXPECT_EQ(content, "another film");
+  EXPECT_EQ(messageOf([&] { FilmWriter(path(), kRate_hz, true); }), "no error");
 }
 
 TEST_F(FilmWriterTest, LeavesNothingBehindUnlessClosed) {

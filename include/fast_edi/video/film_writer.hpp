@@ -44,8 +44,8 @@ class FilmWriter {
   /// Looks whether the file can be written; the codec is opened with the first image.
   /// \param path ends in .mp4, .mov (MPEG-4) or .avi (Motion JPEG)
   /// \param rate_hz images of a second of recording
-  /// \param overwrite replace \p path if it exists
-  /// \throws FilmError for a path that may not be written
+  /// \param overwrite replace \p path, and what is unfinished beside it (X.active.mp4), if they
+  /// exist \throws FilmError for a path that may not be written
   FilmWriter(const std::string& path, int rate_hz, bool overwrite);
   /// Removes an unfinished film.
   ~FilmWriter();
