@@ -27,8 +27,10 @@ FAST_EDI_DEBIAN_RUN=(
 FAST_EDI_DEBIAN_TEST=(
   python3-rostest libgtest-dev libgmock-dev catkin-lint clang-tidy clang-format doxygen libxml2-utils
   shellcheck
-  clang libclang-rt-dev
+  clang
 )
+# Before Debian 12 this comes with clang.
+FAST_EDI_DEBIAN_12_TEST=(libclang-rt-dev)
 
 # The same on Ubuntu 20.04 with the ROS Noetic packages.
 FAST_EDI_NOETIC_BUILD=(
@@ -104,17 +106,34 @@ fast_edi_install() {
     apt-get -q install -y --no-install-recommends "${missing[@]}" </dev/null
 }
 
-# fast_edi_prepare [test]
-fast_edi_prepare() {
-  export PATH="/usr/bin:$PATH"
+# fast_edi_debian_version [OS_RELEASE_FILE]: its number; large for those that have none (testing, sid).
+fast_edi_debian_version() {
+  local version
+  version=$(sed -n 's/^VERSION_ID="\{0,1\}\([0-9]*\).*/\1/p' "${1:-/etc/os-release}")
+  echo "${version:-1000}"
+}
+
+# fast_edi_packages [test [OS_RELEASE_FILE]]: what is needed, one on each line.
+fast_edi_packages() {
   local packages
   if [ -d "$FAST_EDI_NOETIC" ]; then
     packages=("${FAST_EDI_NOETIC_BUILD[@]}" "${FAST_EDI_NOETIC_RUN[@]}")
     [ "${1:-}" = test ] && packages+=("${FAST_EDI_NOETIC_TEST[@]}")
   else
     packages=("${FAST_EDI_DEBIAN_BUILD[@]}" "${FAST_EDI_DEBIAN_RUN[@]}")
-    [ "${1:-}" = test ] && packages+=("${FAST_EDI_DEBIAN_TEST[@]}")
+    if [ "${1:-}" = test ]; then
+      packages+=("${FAST_EDI_DEBIAN_TEST[@]}")
+      [ "$(fast_edi_debian_version "${2:-}")" -lt 12 ] || packages+=("${FAST_EDI_DEBIAN_12_TEST[@]}")
+    fi
   fi
+  printf '%s\n' "${packages[@]}"
+}
+
+# fast_edi_prepare [test]
+fast_edi_prepare() {
+  export PATH="/usr/bin:$PATH"
+  local packages
+  mapfile -t packages < <(fast_edi_packages "$@")
   fast_edi_install "${packages[@]}" || return 1
   if [ -d "$FAST_EDI_NOETIC" ]; then
     fast_edi_source "$FAST_EDI_NOETIC/setup.bash"
@@ -130,6 +149,32 @@ fast_edi_source() {
   [[ $options == *e* ]] && set -e
   [[ $options == *u* ]] && set -u
   return 0
+}
+
+# How launch/demo and test/run configure build/: alike, so that neither builds again what the other has
+# built. Tests are built by the target `tests` alone. Without the packages that they need, CMake says
+# so and leaves them out.
+# shellcheck disable=SC2034
+FAST_EDI_OPTIONS=(
+  -DCMAKE_BUILD_TYPE=Release -DCATKIN_ENABLE_TESTING=ON -DFAST_EDI_WARNINGS_AS_ERRORS=ON
+)
+
+# fast_edi_make BUILD_FOLDER [TARGET ...]
+fast_edi_make() {
+  make --no-print-directory --quiet -j"$(nproc)" -C "$@"
+}
+
+# fast_edi_refuse_folder FOLDER: says why the package cannot be built there, if it cannot.
+fast_edi_refuse_folder() {
+  local taken=$'[]["\'`$\\\\;:#%&<>|*?!(){}\t\n]'
+  # shellcheck disable=SC2254
+  case $1 in
+    *$taken*)
+      echo "fast_edi: make, catkin or ROS take apart the name of the folder $1: expected none of the" \
+        "characters \" ' \` \$ \\ ; : # % & < > | * ? ! ( ) { } [ ] in it" >&2
+      return 1
+      ;;
+  esac
 }
 
 # fast_edi_configure BUILD_FOLDER [CMake option ...]: configures the package in a build folder of
