@@ -59,7 +59,8 @@ TEST(DriverSettings, EndAtOnceWhenTheDriverNeverComes) {
   ChildProcess settings({FAST_EDI_SOURCE_DIR "/launch/driver_settings", "no_such_driver", "none"});
   // It can be interrupted once it listens.
   const auto known = [] {
-    return testing::runCommand("rostopic info /none").output.find("/driver_settings") != std::string::npos;
+    return testing::runCommand("rostopic info /none").output.find("/driver_settings") !=
+           std::string::npos;
   };
   const auto start = std::chrono::steady_clock::now();
   while (!known()) {
