@@ -38,17 +38,21 @@ Event decodeWireEvent(const std::uint8_t* record) {
   return event;
 }
 
+void setWirePixel(std::uint16_t x, std::uint16_t y, bool on, std::uint8_t* record) {
+  writeNumber(x, record + kXOffset);
+  writeNumber(y, record + kYOffset);
+  record[kPolarityOffset] = on ? 1 : 0;
+}
+
 void encodeWireEvent(const Event& event, std::vector<std::uint8_t>& bytes) {
   const std::size_t begin = bytes.size();
   bytes.resize(begin + kWireEventBytes);
   std::uint8_t* record = bytes.data() + begin;
-  writeNumber(event.x, record + kXOffset);
-  writeNumber(event.y, record + kYOffset);
+  setWirePixel(event.x, event.y, event.on, record);
   writeNumber(static_cast<std::uint32_t>(event.t_ns / kNanosecondsPerSecond),
               record + kSecondsOffset);
   writeNumber(static_cast<std::uint32_t>(event.t_ns % kNanosecondsPerSecond),
               record + kNanosecondsOffset);
-  record[kPolarityOffset] = event.on ? 1 : 0;
 }
 
 }  // namespace fast_edi
