@@ -72,6 +72,11 @@ double pathLength(const std::vector<TimedPosition>& sorted) {
   return length;
 }
 
+bool standsStill(const std::vector<Eigen::Vector3d>& positions) {
+  return std::all_of(positions.begin(), positions.end(),
+                     [&](const Eigen::Vector3d& position) { return position == positions[0]; });
+}
+
 }  // namespace
 
 TrajectoryAlignment trajectoryAlignmentFromName(const std::string& name) {
@@ -114,8 +119,16 @@ TrajectoryError compareTrajectories(std::vector<TimedPosition> estimate,
                                 std::to_string(error.compared) + " of " +
                                 std::to_string(estimate.size()));
   }
-  error.tracked_share =
-      static_cast<double>(tracked_ns) / static_cast<double>(truth.back().t_ns - truth.front().t_ns);
+  const std::int64_t span_ns = truth.back().t_ns - truth.front().t_ns;
+  if (span_ns <= 0) {
+    throw std::invalid_argument("expected true poses at several instants, found all " +
+                                std::to_string(truth.size()) + " of them at one");
+  }
+  error.tracked_share = static_cast<double>(tracked_ns) / static_cast<double>(span_ns);
+  if (comparison.alignment == TrajectoryAlignment::kSimilarity && standsStill(error.estimate)) {
+    throw std::invalid_argument(
+        "expected an estimate that moves: a single place has no scale, use the alignment se3");
+  }
 
   const Eigen::Affine3d transform =
       align(columnsOf(error.estimate), columnsOf(error.truth), comparison.alignment);

@@ -134,6 +134,23 @@ TEST(TrajectoryErrorTest, TooLittleToCompareIsRefused) {
               HasSubstr("expected yaw, se3 or sim3"));
 }
 
+TEST(TrajectoryErrorTest, TruthOfOneInstantIsRefused) {
+  const std::vector<TimedPosition> same(4, loop().front());
+  EXPECT_THAT(messageOf<std::invalid_argument>([&] { compareTrajectories(same, same, {}); }),
+              HasSubstr("found all 4 of them at one"));
+}
+
+TEST(TrajectoryErrorTest, AnEstimateThatStandsStillHasNoScale) {
+  std::vector<TimedPosition> still = loop();
+  for (TimedPosition& timed : still) {
+    timed.position.setZero();
+  }
+  EXPECT_GT(compare(still).rmse_m, 1.0);
+  EXPECT_THAT(
+      messageOf<std::invalid_argument>([&] { compare(still, TrajectoryAlignment::kSimilarity); }),
+      HasSubstr("a single place has no scale"));
+}
+
 TEST(TrajectoryPlotTest, DrawsBothWithinThePicture) {
   const TrajectoryError error = compare(loop());
   const cv::Mat plot = topViewPlot("loop", error);

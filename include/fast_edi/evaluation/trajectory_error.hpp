@@ -58,7 +58,8 @@ struct TrajectoryError {
 /// Compares positions by their time, with the truth interpolated linearly. Both may come in any
 /// order. The alignment is one for the whole trajectory: a reset that moves the origin counts as
 /// the error that it is to a user.
-/// \throws std::invalid_argument when fewer than three estimates can be compared
+/// \throws std::invalid_argument when fewer than three estimates can be compared, when all true
+/// positions are of one instant, or when the scale is wanted of an estimate that does not move
 TrajectoryError compareTrajectories(std::vector<TimedPosition> estimate,
                                     std::vector<TimedPosition> truth,
                                     const TrajectoryComparison& comparison);
