@@ -38,6 +38,11 @@ const std::vector<FaultDescription>& faultDescriptions() {
       {"suppress-off", &RecordingFaults::suppress_off, 1, "OFF events are missing"},
       {"flatten-polarity", &RecordingFaults::flatten_polarity, 1, "all events are OFF"},
       {"invert-polarity", &RecordingFaults::invert_polarity, 1, "ON and OFF are exchanged"},
+      {"event-orientation", &RecordingFaults::event_orientation, 2,
+       "events are turned: 1 flip_x, 2 flip_y, 3 rotate_180, 4 transpose, 5 rotate_90, 6 "
+       "rotate_270, 7 transverse undo it"},
+      {"coordinates-from", &RecordingFaults::coordinates_from, 1,
+       "columns and rows of events count from so much"},
       {"event-hole", &RecordingFaults::event_hole_ms, 30,
        "no events for so many ms from the middle on"},
       {"no-events-between", &RecordingFaults::no_events_between, 1,
@@ -46,6 +51,8 @@ const std::vector<FaultDescription>& faultDescriptions() {
        "one event in so many is stamped 200 us too early"},
       {"clock-offset", &RecordingFaults::clock_offset_us, 10'000,
        "the events' clock is so many us ahead of the frames'"},
+      {"frame-stamps-times", &RecordingFaults::frame_stamps_times, 2,
+       "frame stamps are so many times what they should be"},
       {"time-jump-back", &RecordingFaults::time_jump_back_ms, 2'000,
        "all stamps jump back by so many ms in the middle"},
       {"start-near-1970", &RecordingFaults::start_near_1970_ms, 100,
@@ -148,13 +155,36 @@ void FaultyStream::apply(const ExposureInterval& exposure, std::vector<Event>& e
     return (faults_.no_events_between != 0 && !inside) || !passes(event);
   });
   events.erase(removed, events.end());
+  const EventMapping mapping = turned();
   for (Event& event : events) {
+    event = mapping.apply(event, size_);
+    event.x = static_cast<std::uint16_t>(event.x + faults_.coordinates_from);
+    event.y = static_cast<std::uint16_t>(event.y + faults_.coordinates_from);
     event.on = faults_.flatten_polarity == 0 && (event.on != (faults_.invert_polarity != 0));
     ++events_;
     if (faults_.unordered_events > 0 && events_ % faults_.unordered_events == 0) {
       event.t_ns = std::max(start_ns_, event.t_ns - kUnordered_ns);
     }
   }
+}
+
+/// What is undone by the orientation named.
+EventMapping FaultyStream::turned() const {
+  const auto place = static_cast<std::size_t>(faults_.event_orientation);
+  EventMapping mapping;
+  mapping.orientation = kEventOrientations[place % kEventOrientations.size()].second;
+  if (mapping.orientation == EventOrientation::kRotate90) {
+    mapping.orientation = EventOrientation::kRotate270;
+  } else if (mapping.orientation == EventOrientation::kRotate270) {
+    mapping.orientation = EventOrientation::kRotate90;
+  }
+  return mapping;
+}
+
+SensorSize FaultyStream::eventSize(SensorSize size) const {
+  const SensorSize stated = turned().apply(size);
+  const auto wrong_px = static_cast<int>(faults_.event_size);
+  return {stated.width + wrong_px, stated.height + wrong_px};
 }
 
 std::int64_t FaultyStream::faultyClock(std::int64_t t_ns) const {
@@ -170,7 +200,7 @@ std::int64_t FaultyStream::eventStamp(std::int64_t t_ns) const {
 }
 
 std::int64_t FaultyStream::frameStamp(std::int64_t t_ns) const {
-  return faultyClock(t_ns);
+  return faultyClock(t_ns) * std::max<std::int64_t>(1, faults_.frame_stamps_times);
 }
 
 }  // namespace fast_edi

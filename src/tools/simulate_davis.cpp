@@ -126,9 +126,9 @@ class Recording {
         faulty_(options.faults, simulator.settings().sensor.size, timing_),
         array_end_ns_(timing_.start_ns) {
     const SimulationSettings& settings = simulator.settings();
-    const std::int64_t wrong_px = options_.faults.event_size;
-    array_.width = static_cast<std::uint32_t>(settings.sensor.size.width + wrong_px);
-    array_.height = static_cast<std::uint32_t>(settings.sensor.size.height + wrong_px);
+    const fast_edi::SensorSize stated = faulty_.eventSize(settings.sensor.size);
+    array_.width = static_cast<std::uint32_t>(stated.width);
+    array_.height = static_cast<std::uint32_t>(stated.height);
     camera_info_ = makeCameraInfo(settings);
     imu_settings_ = settings.imu;
     array_end_ns_ += options_.array_length_us * kNanosecondsPerMicrosecond;

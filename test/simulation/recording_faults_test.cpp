@@ -71,6 +71,31 @@ TEST(RecordingFaultsTest, PolaritiesChange) {
   }
 }
 
+TEST(RecordingFaultsTest, EventsAreTurnedSoThatTheOrientationNamedUndoesIt) {
+  for (std::size_t i = 0; i < kEventOrientations.size(); ++i) {
+    RecordingFaults faults;
+    plantFault("event-orientation=" + std::to_string(i), faults);
+    FaultyStream stream(faults, kSize, timing());
+    std::vector<Event> events = {at(0, 3, 1)};
+    stream.apply(kExposure, events);
+    const EventMapping undo{EventPolarity::kNormal, kEventOrientations[i].second};
+    const SensorSize stated = stream.eventSize(kSize);
+    EXPECT_EQ(undo.apply(stated), kSize) << i;
+    EXPECT_EQ(undo.apply(events[0], stated).x, 3) << i;
+    EXPECT_EQ(undo.apply(events[0], stated).y, 1) << i;
+  }
+}
+
+TEST(RecordingFaultsTest, CoordinatesMayCountFromOne) {
+  RecordingFaults faults;
+  plantFault("coordinates-from", faults);
+  FaultyStream stream(faults, kSize, timing());
+  std::vector<Event> events = {at(0, 19, 9)};
+  stream.apply(kExposure, events);
+  EXPECT_EQ(events[0].x, 20);
+  EXPECT_EQ(events[0].y, 10);
+}
+
 TEST(RecordingFaultsTest, UnorderedEventsLieBehindTheirPredecessor) {
   EXPECT_THAT(left("unordered-events=3", {at(1000), at(1001), at(1002), at(1003)}),
               ElementsAre(1000, 1001, 802, 1003));
@@ -83,6 +108,11 @@ TEST(RecordingFaultsTest, ClocksGoWrong) {
   EXPECT_EQ(behind.eventStamp(5000), 3000);
   EXPECT_EQ(behind.eventStamp(1000), 0);
   EXPECT_EQ(behind.frameStamp(5000), 5000);
+
+  RecordingFaults doubled;
+  plantFault("frame-stamps-times", doubled);
+  EXPECT_EQ(FaultyStream(doubled, kSize, timing()).frameStamp(5000), 10'000);
+  EXPECT_EQ(FaultyStream(doubled, kSize, timing()).eventStamp(5000), 5000);
 
   RecordingFaults jump;
   plantFault("time-jump-back=20", jump);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "fast_edi/core/event_mapping.hpp"
 #include "fast_edi/core/types.hpp"
 #include "fast_edi/simulation/simulation_settings.hpp"
 
@@ -25,9 +26,12 @@ struct RecordingFaults {
   std::int64_t invert_polarity = 0;
   std::int64_t event_hole_ms = 0;
   std::int64_t no_events_between = 0;
+  std::int64_t event_orientation = 0;  ///< place in kEventOrientations of what undoes it
+  std::int64_t coordinates_from = 0;
   std::int64_t unordered_events = 0;  ///< one in so many events comes 200 us too early
   // Of clocks and stamps.
-  std::int64_t clock_offset_us = 0;  ///< events minus frames
+  std::int64_t clock_offset_us = 0;     ///< events minus frames
+  std::int64_t frame_stamps_times = 0;  ///< frame stamps are multiplied by it
   std::int64_t time_jump_back_ms = 0;
   std::int64_t start_near_1970_ms = 0;
   std::int64_t repeated_stamp = 0;
@@ -65,6 +69,8 @@ class FaultyStream {
   /// \param exposure the one exposure that the events' interval has
   void apply(const ExposureInterval& exposure, std::vector<Event>& events);
 
+  /// What event arrays state: axes may be exchanged. \param size of the sensor
+  SensorSize eventSize(SensorSize size) const;
   /// What an event of true time \p t_ns is stamped with, not before 0.
   std::int64_t eventStamp(std::int64_t t_ns) const;
   /// What a frame with the true stamp \p t_ns is stamped with.
@@ -78,6 +84,7 @@ class FaultyStream {
            static_cast<std::size_t>(x);
   }
   bool passes(const Event& event);
+  EventMapping turned() const;
   bool isSupported(const Event& event);
   std::int64_t faultyClock(std::int64_t t_ns) const;
 
