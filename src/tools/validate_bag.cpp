@@ -75,7 +75,12 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   return true;
 }
 
-fast_edi::AssumedParameters assumedParameters(const Arguments& arguments) {
+struct Assumed {
+  fast_edi::AssumedParameters parameters;
+  fast_edi::DeblurParameters pipeline;
+};
+
+Assumed assumedParameters(const Arguments& arguments) {
   fast_edi::AssumedParameters assumed;
   assumed.thresholds_given = true;
   fast_edi::LoadedParameters loaded;
@@ -98,10 +103,10 @@ fast_edi::AssumedParameters assumedParameters(const Arguments& arguments) {
   assumed.exposure_time_ns = loaded.deblur.exposure_time_ns;
   assumed.exposure_from_parameter =
       loaded.deblur.exposure_source == fast_edi::ExposureSource::kParameter;
-  return assumed;
+  return {assumed, loaded.deblur};
 }
 
-/// Hands a message on. \return false when it contradicts itself
+/// Hands a message on. \return false when it contradicts itself: it is not used
 bool feed(const fast_edi::BagMessage& message, const fast_edi::TopicNames& topics,
           fast_edi::RecordingValidator& validator) {
   const auto record_ns = static_cast<std::int64_t>(message.time.toNSec());
@@ -116,6 +121,9 @@ bool feed(const fast_edi::BagMessage& message, const fast_edi::TopicNames& topic
     } else if (topic == topics.image) {
       const auto image = fast_edi::deserialise<sensor_msgs::Image>(message);
       const fast_edi::ImageReading reading = fast_edi::readImage(*image);
+      if (reading.verdict == fast_edi::ImageVerdict::kMalformed) {
+        return false;
+      }
       fast_edi::FrameMessage frame;
       frame.stamp_ns = static_cast<std::int64_t>(image->header.stamp.toNSec());
       frame.sequence = image->header.seq;
@@ -179,7 +187,7 @@ void drawCurve(const std::string& path, const fast_edi::TimingEstimate& timing) 
   }
   fast_edi::PlotSeries correlation{"correlation", {}};
   fast_edi::PlotSeries cost{"cost (log residual)", {}};
-  for (const fast_edi::TimingEstimate::CurvePoint& point : timing.curve) {
+  for (const fast_edi::ShiftPoint& point : timing.curve) {
     correlation.values.emplace_back(point.correlation);
     cost.values.emplace_back(point.cost);
   }
@@ -199,7 +207,7 @@ int run(const Arguments& arguments) {
   if (!arguments.output.empty()) {
     tools::requireFree(curvePath(arguments), arguments.overwrite);
   }
-  const fast_edi::AssumedParameters assumed = assumedParameters(arguments);
+  const Assumed assumed = assumedParameters(arguments);
   fast_edi::TopicNames topics = arguments.topics;
   topics.output = "/validate_bag";  // writes none: topics of deblurred frames may be there already
   {
@@ -215,7 +223,7 @@ int run(const Arguments& arguments) {
   }
   std::cout << "events " << topics.events << ", frames " << topics.image << ", exposures "
             << topics.exposure << "\n";
-  fast_edi::RecordingValidator validator(assumed);
+  fast_edi::RecordingValidator validator(assumed.parameters, assumed.pipeline);
   const PassResult pass = readThrough(arguments, topics, "looking through", validator);
   if (validator.endSurvey()) {
     readThrough(arguments, topics, "picking frames", validator);

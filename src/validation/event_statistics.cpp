@@ -44,6 +44,7 @@ EventStatistics::EventStatistics(SensorSize size)
       stride_(static_cast<std::size_t>(size.width) + 2),
       last_ns_(stride_ * (static_cast<std::size_t>(size.height) + 2), kNever),
       counts_(size.pixelCount()),
+      shortest_ns_(size.pixelCount(), std::numeric_limits<std::int64_t>::max()),
       busy_slices_(size.pixelCount()),
       last_slice_(size.pixelCount(), kNever) {}
 
@@ -60,6 +61,8 @@ void EventStatistics::restart(std::int64_t t_ns) {
 }
 
 void EventStatistics::add(const Event& event) {
+  largest_x_ = std::max(largest_x_, static_cast<int>(event.x));
+  largest_y_ = std::max(largest_y_, static_cast<int>(event.y));
   if (event.x >= size_.width || event.y >= size_.height) {
     ++outside_;
     return;
@@ -89,8 +92,32 @@ void EventStatistics::add(const Event& event) {
   neighbour_times_.add(event.t_ns - std::max(neighbours, start_ns_));
   if (*last != kNever) {
     pixel_times_.add(event.t_ns - *last);
+    shortest_ns_[pixel] = std::min(shortest_ns_[pixel], event.t_ns - *last);
   }
   *last = event.t_ns;
+}
+
+std::size_t EventStatistics::pixelsWithShortest(double from_ns, double to_ns) const {
+  return static_cast<std::size_t>(
+      std::count_if(shortest_ns_.begin(), shortest_ns_.end(), [&](std::int64_t time_ns) {
+        return static_cast<double>(time_ns) >= from_ns && static_cast<double>(time_ns) < to_ns;
+      }));
+}
+
+std::uint64_t EventStatistics::inColumn(int x) const {
+  std::uint64_t sum = 0;
+  for (int y = 0; y < size_.height; ++y) {
+    sum += counts_[pixelIndex(x, y)];
+  }
+  return sum;
+}
+
+std::uint64_t EventStatistics::inRow(int y) const {
+  std::uint64_t sum = 0;
+  for (int x = 0; x < size_.width; ++x) {
+    sum += counts_[pixelIndex(x, y)];
+  }
+  return sum;
 }
 
 std::vector<HotPixel> EventStatistics::hotPixels() const {

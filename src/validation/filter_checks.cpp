@@ -21,6 +21,10 @@ constexpr double kBreakOff = 2.0;
 constexpr double kCutOff = 0.25;
 constexpr std::size_t kTrend = 7;  ///< bins from the edge to where the trend is taken
 constexpr std::uint64_t kEnough = 60;
+/// Just before the edge there may not be so many times more events than before that: a burst of the
+/// whole sensor in step with the frames or the light ends the neighbours' rest at its period, and
+/// the times behind that peak are few without any filter.
+constexpr double kPeak = 2.2;
 constexpr double kLevel = 0.45;
 constexpr double kNothing = 0.03;
 /// A set-in: at most this part before the edge.
@@ -29,6 +33,9 @@ constexpr double kSetIn = 0.03;
 constexpr double kAtOnce = 0.22;
 /// Events before that edge, of all.
 constexpr double kMostEarlier = 0.01;
+/// Pixels whose shortest time lies within an octave above the edge.
+constexpr double kOctave = 2.0;
+constexpr std::size_t kEnoughPixels = 30;
 constexpr double kMissingPolarity = 0.01;
 constexpr double kImbalance = 2.0;
 constexpr std::uint64_t kEnoughForBalance = 1000;
@@ -45,6 +52,16 @@ double fall(const TimeHistogram& times, std::size_t bin) {
       std::min(times.sum(bin - kSide, bin), times.sum(bin - 2 * kSide, bin - kSide));
   const std::uint64_t behind = times.sum(bin + 1, bin + 1 + kSide);
   return std::log((static_cast<double>(before) + 1.0) / (static_cast<double>(behind) + 1.0));
+}
+
+/// True when events pile up just before the bin, where times that chance gives only fall.
+bool isBehindPeak(const TimeHistogram& times, std::size_t bin) {
+  std::uint64_t highest = 0;
+  for (std::size_t i = bin - kSide; i <= bin + 1; ++i) {
+    highest = std::max(highest, times[i]);
+  }
+  const double usual = static_cast<double>(times.sum(bin - 3 * kSide, bin - kSide)) / (2 * kSide);
+  return static_cast<double>(highest) > kPeak * usual;
 }
 
 /// True when the curve is about level before the bin and behind it, unlike the tail of times that
@@ -102,7 +119,7 @@ void checkHotPixels(const EventStatistics& statistics, std::vector<Finding>& fin
                       textOf("%zu, as (column, row) and rate: %s%s", hot.size(), list.c_str(),
                              hot.size() > kListedPixels ? ", ..." : ""),
                       "driver: pixel_auto_train, or pixel_0_column/_row to pixel_7_...; fast_edi: "
-                      "filter_despeckle: true"});
+                      "filter_despeckle (on by default)"});
 }
 
 }  // namespace
@@ -110,7 +127,7 @@ void checkHotPixels(const EventStatistics& statistics, std::vector<Finding>& fin
 std::optional<double> backgroundActivityEdgeNs(const TimeHistogram& times, double longest_ns) {
   std::optional<double> edge_ns;
   double sharpest = std::log(kBreakOff);
-  for (std::size_t bin = kTrend + 2 * kSide; bin + 2 * kSide + 1 < TimeHistogram::kBins; ++bin) {
+  for (std::size_t bin = kTrend + 3 * kSide; bin + 2 * kSide + 1 < TimeHistogram::kBins; ++bin) {
     const double start_ns = TimeHistogram::binStartNs(bin);
     if (start_ns < kLeastActivityTime_ns || start_ns > longest_ns ||
         times.sum(bin - kSide, bin) < kEnough) {
@@ -118,7 +135,7 @@ std::optional<double> backgroundActivityEdgeNs(const TimeHistogram& times, doubl
     }
     // How fast the curve falls anyway, before the edge.
     const double drop = fall(times, bin) - std::max(0.0, fall(times, bin - kTrend));
-    if (drop > sharpest && isStep(times, bin)) {
+    if (drop > sharpest && isStep(times, bin) && !isBehindPeak(times, bin)) {
       sharpest = drop;
       edge_ns = TimeHistogram::binStartNs(bin + 1);
     }
@@ -158,11 +175,14 @@ std::vector<Finding> checkFilters(const EventStatistics& statistics, double stre
           statistics.neighbourTimes(), std::min(kMostActivityTime_ns, kCutOff * stretch_ns))) {
     findings.push_back(
         {"background-activity-filter", "isolated events, too: noise shows that nothing was removed",
-         textOf("hardly an event without a neighbour's in the %.1f ms before it", *edge_ns / kMs),
+         textOf("events whose neighbours' last lies more than %.1f ms back are suddenly few",
+                *edge_ns / kMs),
          "driver: background_activity_filter_enabled: false; the first events of edges are "
          "missing"});
   }
-  if (const auto edge_ns = refractoryEdgeNs(statistics.pixelTimes())) {
+  const auto edge_ns = refractoryEdgeNs(statistics.pixelTimes());
+  // A few hot pixels with a beat of their own are no filter.
+  if (edge_ns && statistics.pixelsWithShortest(*edge_ns, kOctave * *edge_ns) >= kEnoughPixels) {
     findings.push_back(
         {"refractory-filter", "events of a pixel within 0.2 ms of each other, too",
          textOf("none within %.2f ms of the pixel's last, many from there on", *edge_ns / kMs),

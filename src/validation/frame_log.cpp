@@ -58,6 +58,12 @@ void FrameLog::finish() {
   }
 }
 
+void FrameLog::changeStamps(const std::function<std::int64_t(std::int64_t stamp_ns)>& change) {
+  for (LoggedFrame& frame : frames_) {
+    frame.stamp_ns = change(frame.stamp_ns);
+  }
+}
+
 std::int64_t FrameLog::periodNs() const {
   std::vector<std::int64_t> steps;
   for (std::size_t i = 1; i < frames_.size(); ++i) {

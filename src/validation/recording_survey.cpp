@@ -38,7 +38,7 @@ void RecordingSurvey::addEvents(const WireEvents& events, SensorSize size, std::
     }
     statistics_->add(event);
   }
-  array_delays_ns_.push_back(record_ns - timeline_.epochs().back().last_ns);
+  arrays_.push_back({{timeline_.epochs().back().last_ns, record_ns}, epochs - 1});
 }
 
 void RecordingSurvey::addFrame(const FrameMessage& frame) {
@@ -51,17 +51,41 @@ void RecordingSurvey::addExposure(std::int32_t exposure_us, std::int64_t record_
 
 void RecordingSurvey::finish() {
   frames_.finish();
+  relate();
   use_messages_ = !parameters_.exposure_from_parameter && exposuresPlausible();
 }
 
-std::int64_t RecordingSurvey::roughClockOffsetNs() const {
-  std::vector<std::int64_t> frame_delays_ns;
-  for (const LoggedFrame& frame : frames_.frames()) {
-    frame_delays_ns.push_back(frame.record_ns - frame.stamp_ns);
+/// Within the longest epoch of the events: others say nothing of it.
+void RecordingSurvey::relate() {
+  const EventEpoch* longest = timeline_.longestEpoch();
+  if (longest == nullptr) {
+    return;
   }
-  return frame_delays_ns.empty() || array_delays_ns_.empty()
-             ? 0
-             : median(std::move(frame_delays_ns)) - median(array_delays_ns_);
+  const auto epoch = static_cast<std::size_t>(longest - timeline_.epochs().data());
+  const auto frameReadings = [&] {
+    std::vector<ClockReading> readings;
+    for (const LoggedFrame& frame : frames_.frames()) {
+      if (frame.epoch == epoch) {
+        readings.push_back({frame.stamp_ns, frame.record_ns});
+      }
+    }
+    return readings;
+  };
+  std::vector<ClockReading> array_readings;
+  for (const ArrayReading& array : arrays_) {
+    if (array.epoch == epoch) {
+      array_readings.push_back(array.clock);
+    }
+  }
+  clocks_ = relateClocks(frameReadings(), array_readings);
+  if (!clocks_) {
+    return;
+  }
+  rough_offset_ns_ = clocks_->offset_ns;
+  if (clocks_->factor != 1) {
+    frames_.changeStamps([this](std::int64_t stamp_ns) { return clocks_->undone(stamp_ns); });
+    rough_offset_ns_ = relateClocks(frameReadings(), array_readings)->offset_ns;
+  }
 }
 
 std::int64_t RecordingSurvey::typicalExposureUs() const {

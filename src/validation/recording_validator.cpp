@@ -7,6 +7,7 @@
 #include "fast_edi/validation/coverage_checks.hpp"
 #include "fast_edi/validation/exposure_checks.hpp"
 #include "fast_edi/validation/filter_checks.hpp"
+#include "fast_edi/validation/mapping_checks.hpp"
 #include "fast_edi/validation/sample_choice.hpp"
 #include "fast_edi/validation/stream_checks.hpp"
 #include "fast_edi/validation/timing_checks.hpp"
@@ -18,8 +19,6 @@ namespace {
 /// exposure need.
 constexpr std::int64_t kLeastRange_ns = 50 * kNanosecondsPerMillisecond;
 constexpr std::int64_t kMargin_ns = 15 * kNanosecondsPerMillisecond;
-/// Clocks that differ by more are looked at around the rough offset.
-constexpr std::int64_t kLargestRoughOffset_ns = 300 * kNanosecondsPerMillisecond;
 /// How well the rough offset is known.
 constexpr std::int64_t kRoughRange_ns = 150 * kNanosecondsPerMillisecond;
 
@@ -29,20 +28,30 @@ void append(std::vector<Finding>& findings, std::vector<Finding> more) {
 
 }  // namespace
 
-RecordingValidator::RecordingValidator(const AssumedParameters& parameters) : survey_(parameters) {}
+RecordingValidator::RecordingValidator(const AssumedParameters& parameters,
+                                       const DeblurParameters& pipeline)
+    : mapping_(EventMapping{}), survey_(parameters), outcomes_(pipeline) {}
 
 void RecordingValidator::addEvents(const WireEvents& events, SensorSize size,
                                    std::uint32_t sequence, std::int64_t record_ns) {
+  WireEvents mapped = events;
+  if (!mapping_.isIdentity()) {
+    mapped_.assign(events.data, events.data + events.count * kWireEventBytes);
+    mapping_.apply(mapped_.data(), events.count, size);
+    mapped.data = mapped_.data();
+  }
   if (sampler_) {
-    sampler_->addEvents(events, size);
+    sampler_->addEvents(mapped, mapping_.apply(size));
   } else {
-    survey_.addEvents(events, size, sequence, record_ns);
+    survey_.addEvents(mapped, mapping_.apply(size), sequence, record_ns);
+    outcomes_.addEvents(events, size, sequence, record_ns);
   }
 }
 
 void RecordingValidator::addFrame(const FrameMessage& frame) {
   if (!sampler_) {
     survey_.addFrame(frame);
+    outcomes_.addFrame(frame);
     return;
   }
   const std::vector<LoggedFrame>& frames = survey_.frames().frames();
@@ -61,11 +70,13 @@ void RecordingValidator::addFrame(const FrameMessage& frame) {
 void RecordingValidator::addExposure(std::int32_t exposure_us, std::int64_t record_ns) {
   if (!sampler_) {
     survey_.addExposure(exposure_us, record_ns);
+    outcomes_.addExposure(exposure_us, record_ns);
   }
 }
 
 bool RecordingValidator::endSurvey() {
   survey_.finish();
+  outcomes_.finish();
   by_events_ = exposuresByEvents(survey_);
   if (survey_.statistics() == nullptr || by_events_) {
     return false;
@@ -83,7 +94,7 @@ bool RecordingValidator::endSurvey() {
     longest_ns = survey_.frames().periodNs();
   }
   search_.range_ns = std::max(kLeastRange_ns, longest_ns / 2 + kMargin_ns);
-  if (std::abs(survey_.roughClockOffsetNs()) > kLargestRoughOffset_ns) {
+  if (std::abs(survey_.roughClockOffsetNs()) > RecordingSurvey::kLargestDelay_ns) {
     search_.centre_ns = survey_.roughClockOffsetNs();
     search_.range_ns = std::max(search_.range_ns, kRoughRange_ns);
   }
@@ -97,6 +108,8 @@ bool RecordingValidator::endSurvey() {
 
 ValidationReport RecordingValidator::finish(std::function<void(int done, int total)> progress) {
   ValidationReport report;
+  report.counters = outcomes_.counters();
+  report.outcomes = outcomes_.describe();
   append(report.findings, checkStreams(survey_));
   if (survey_.statistics() != nullptr) {
     const EventEpoch& epoch = *survey_.timeline().longestEpoch();
@@ -110,11 +123,13 @@ ValidationReport RecordingValidator::finish(std::function<void(int done, int tot
   report.timing.why_not = why_not_;
   if (sampler_) {
     search_.progress = std::move(progress);
-    const SensorSize size = sampler_->sampleSize();
+    const SampleGrid grid = sampler_->grid();
     std::vector<TimingSample> samples = sampler_->take();
-    report.timing = estimateTiming(samples, size, search_);
+    report.timing = estimateTiming(samples, grid, search_);
   }
   TimingVerdict verdict = judgeTiming(survey_, report.timing, by_events_);
+  append(report.findings, checkMapping(survey_, report.timing, mapping_));
+  verdict.proposal.event_mapping = combined(mapping_, report.timing.mapping);
   append(report.findings, std::move(verdict.findings));
   report.notes = std::move(verdict.notes);
   report.proposal = verdict.proposal;

@@ -24,6 +24,18 @@ void printSummary(std::ostream& out, const RecordingSurvey& survey) {
                 survey.statistics()->size().width, survey.statistics()->size().height);
 }
 
+/// Nothing where events are as they should be.
+std::string mappingLines(const EventMapping& mapping) {
+  std::string lines;
+  if (mapping.polarity == EventPolarity::kInverted) {
+    lines += "event_polarity: inverted\n";
+  }
+  if (mapping.orientation != EventOrientation::kNormal) {
+    lines += std::string("event_orientation: ") + toString(mapping.orientation) + "\n";
+  }
+  return lines;
+}
+
 }  // namespace
 
 void printFinding(std::ostream& out, const Finding& finding) {
@@ -33,6 +45,9 @@ void printFinding(std::ostream& out, const Finding& finding) {
 
 void printReport(std::ostream& out, const RecordingSurvey& survey, const ValidationReport& report) {
   printSummary(out, survey);
+  if (!report.outcomes.empty()) {
+    out << "with these parameters: " << report.outcomes << "\n";
+  }
   for (const std::string& note : report.notes) {
     out << "note: " << note << "\n";
   }
@@ -41,13 +56,15 @@ void printReport(std::ostream& out, const RecordingSurvey& survey, const Validat
   }
   out << "\n"
       << (report.findings.empty() ? std::string("no findings")
-                                  : textOf("%zu findings", report.findings.size()))
+                                  : textOf("%zu finding%s", report.findings.size(),
+                                           report.findings.size() == 1 ? "" : "s"))
       << "; proposal:\n\n";
   const ParameterProposal& proposal = report.proposal;
   const bool by_topic = proposal.exposure_time_us == 0 && !survey.frames().exposuresUs().empty();
   out << "stamp_reference: " << instantName(proposal.stamp_reference) << "\n"
-      << "time_offset_us: " << proposal.time_offset_us << "\n"
-      << "exposure_time_us: " << proposal.exposure_time_us
+      << "time_offset_us: " << proposal.time_offset_us
+      << (proposal.offset_remark.empty() ? "" : "  # " + proposal.offset_remark) << "\n"
+      << mappingLines(proposal.event_mapping) << "exposure_time_us: " << proposal.exposure_time_us
       << (proposal.exposure_time_us > 0 ? ""
           : by_topic                    ? "  # the exposure topic has it"
                                         : "  # not known: cannot be told, see the driver")

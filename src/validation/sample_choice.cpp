@@ -34,12 +34,14 @@ std::vector<SampleRequest> chooseSamples(const RecordingSurvey& survey, std::int
   const std::vector<ExposureInterval> holes = eventHoles(survey);
   const std::vector<LoggedFrame>& frames = survey.frames().frames();
   const auto period_ns = static_cast<double>(survey.frames().periodNs());
+  const SensorSize sensor = survey.statistics()->size();
+  const SensorSize turned{sensor.height, sensor.width};  // events may have their axes exchanged
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i + 1 < frames.size(); ++i) {
     const LoggedFrame& first = frames[i];
     const LoggedFrame& second = frames[i + 1];
     const std::int64_t gap_ns = second.stamp_ns - first.stamp_ns;
-    if (!first.supported || !second.supported || first.size != survey.statistics()->size() ||
+    if (!first.supported || !second.supported || (first.size != sensor && first.size != turned) ||
         second.size != first.size || first.epoch != index || second.epoch != index || gap_ns <= 0 ||
         static_cast<double>(gap_ns) > kLargestGap * period_ns) {
       continue;

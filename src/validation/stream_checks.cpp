@@ -9,8 +9,6 @@ namespace fast_edi {
 namespace {
 
 constexpr double kMs = static_cast<double>(kNanosecondsPerMillisecond);
-/// Clocks that differ by more than the delays of recording.
-constexpr std::int64_t kLargestRoughOffset_ns = 300 * kNanosecondsPerMillisecond;
 /// Unordered events below this part come from the merging of packets and are few.
 constexpr double kLeastUnorderedPart = 1e-5;
 
@@ -138,8 +136,45 @@ void checkClocks(const RecordingSurvey& survey, std::vector<Finding>& findings) 
          textOf("%llu frames stamped before the one before", count(frames.earlierStamps())),
          "record again; such frames give no output unless the events jump, too"});
   }
+}
+
+/// Stamps that go on at another rate: no offset makes up for them.
+void checkRates(const ClockRelation& clocks, std::vector<Finding>& findings) {
+  const std::string expected = "events and frames stamped by the same clock";
+  if (clocks.factor == 1) {
+    findings.push_back(
+        {"clocks-differ", expected,
+         textOf("frame stamps go on %.2f times as fast as those of the events", clocks.rate),
+         "convert the recording with frame stamps of the events' clock"});
+    return;
+  }
+  const std::string what = clocks.divided       ? textOf("divided by %d", clocks.factor)
+                           : clocks.factor == 2 ? std::string("doubled")
+                                                : textOf("multiplied by %d", clocks.factor);
+  const char* undo = clocks.divided ? "multiplied" : "divided";
+  findings.push_back(
+      {"clocks-differ", expected,
+       clocks.exact
+           ? textOf("frame stamps are exactly %s: %s by %d they agree with the events",
+                    what.c_str(), undo, clocks.factor)
+           : textOf("frame stamps go on %.2f times as fast as those of the events: the time "
+                    "since some instant was %s",
+                    clocks.rate, what.c_str()),
+       textOf("convert the recording with frame stamps %s by %d: no time_offset_us makes up for "
+              "them; what is proposed below is for stamps so corrected",
+              undo, clocks.factor)});
+}
+
+void checkOffset(const RecordingSurvey& survey, std::vector<Finding>& findings) {
+  if (!survey.clocks()) {
+    return;
+  }
+  if (survey.clocks()->ratesDiffer()) {
+    checkRates(*survey.clocks(), findings);
+    return;
+  }
   const std::int64_t offset_ns = survey.roughClockOffsetNs() - survey.parameters().time_offset_ns;
-  if (!early && jumps == 0 && std::abs(offset_ns) > kLargestRoughOffset_ns) {
+  if (std::abs(offset_ns) > RecordingSurvey::kLargestDelay_ns) {
     findings.push_back({"clocks-differ", "events and frames stamped by the same clock",
                         textOf("the events' clock is about %.2f s %s the frames', by the times of "
                                "recording",
@@ -156,6 +191,7 @@ std::vector<Finding> checkStreams(const RecordingSurvey& survey) {
   checkSizes(survey, findings);
   checkLosses(survey, findings);
   checkClocks(survey, findings);
+  checkOffset(survey, findings);
   return findings;
 }
 

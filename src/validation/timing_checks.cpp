@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fast_edi/core/contrast_from_bias.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -15,7 +17,10 @@ constexpr double kSigmas = 3.0;
 constexpr double kLargestSigma_ns = 3.0 * kMs;
 constexpr double kWrongLength = 0.25;
 constexpr double kWrongThreshold = 1.6;
+constexpr double kThresholdSigmas = 2.0;
 constexpr double kProposalStep_us = 100.0;
+/// Of an offset by the times of recording.
+constexpr std::int64_t kRoughStep_ns = kNanosecondsPerMillisecond;
 
 /// Where the exposure's middle lies behind an instant, as part of its length.
 double partOf(ExposureInstant instant) {
@@ -84,26 +89,55 @@ void proposeStamps(const RecordingSurvey& survey, const Shift& shift,
               static_cast<long long>(proposal.time_offset_us))});
 }
 
+std::string joined(const std::vector<std::string>& texts) {
+  std::string all;
+  for (const std::string& text : texts) {
+    all += (all.empty() ? "" : ", and ") + text;
+  }
+  return all;
+}
+
 void judgeThresholds(const RecordingSurvey& survey, const TimingEstimate& estimate,
                      TimingVerdict& verdict) {
+  const bool are_given = survey.parameters().thresholds_given;
   const ContrastThresholds& given = survey.parameters().thresholds;
   const ContrastThresholds& found = estimate.thresholds;
-  verdict.notes.push_back(textOf("contrast thresholds that fit best: ON %.2f, OFF %.2f%s", found.on,
-                                 found.off,
-                                 survey.parameters().thresholds_given
-                                     ? textOf(" (given: %.2f, %.2f)", given.on, given.off).c_str()
-                                     : ""));
-  const double ratio = std::sqrt(found.on * found.off / (given.on * given.off));
-  if (survey.parameters().thresholds_given &&
-      (ratio > kWrongThreshold || ratio < 1.0 / kWrongThreshold)) {
-    verdict.findings.push_back(
-        {"contrast", textOf("events that stand for %.2f (ON) and %.2f (OFF)", given.on, given.off),
-         textOf("%.2f and %.2f fit best: the biases are others%s", found.on, found.off,
-                ratio > 1.0 ? ", or events are missing (skip filter)" : ""),
-         textOf("%scontrast_threshold_on: %.2f, contrast_threshold_off: %.2f",
-                ratio > 1.0 ? "driver: skip_enabled: false; if it was: " : "", found.on,
-                found.off)});
+  const ContrastThresholds& sigmas = estimate.threshold_sigmas;
+  std::string note = textOf("contrast thresholds that fit best: ON %.2f +- %.2f, OFF %.2f +- %.2f",
+                            found.on, found.on * sigmas.on, found.off, found.off * sigmas.off);
+  if (are_given) {
+    note += textOf(" (given: %.2f, %.2f)", given.on, given.off);
   }
+  // What the other tools would warn of is no proposal.
+  const std::vector<std::string> warnings = contrastWarnings(found);
+  if (!warnings.empty()) {
+    note += "; not proposed, because " + joined(warnings) +
+            (estimate.frames_stretched
+                 ? "; these frames were stretched (see below)"
+                 : "; frames whose contrast was stretched, or whose DN are not linear in light "
+                   "(response_file, response_offset_dn), look like that");
+  }
+  verdict.notes.push_back(note);
+  const double ratio = std::sqrt(found.on * found.off / (given.on * given.off));
+  const double sigma = 0.5 * std::hypot(sigmas.on, sigmas.off);
+  if (!are_given || std::abs(std::log(ratio)) < std::log(kWrongThreshold) ||
+      std::abs(std::log(ratio)) < kThresholdSigmas * sigma) {
+    return;
+  }
+  const char* cause = ratio > 1.0 ? ", or events are missing (skip filter)" : "";
+  Finding finding{
+      "contrast", textOf("events that stand for %.2f (ON) and %.2f (OFF)", given.on, given.off),
+      textOf("%.2f and %.2f fit best: the biases are others%s", found.on, found.off, cause), ""};
+  if (warnings.empty()) {
+    finding.set =
+        textOf("%scontrast_threshold_on: %.2f, contrast_threshold_off: %.2f",
+               ratio > 1.0 ? "driver: skip_enabled: false; if it was: " : "", found.on, found.off);
+  } else {
+    finding.found += ", or the frames are not linear in light";
+    finding.set =
+        "the biases of the recording; what fits best is not usual (see the note) and not proposed";
+  }
+  verdict.findings.push_back(finding);
 }
 
 void judgeLength(const RecordingSurvey& survey, const TimingEstimate& estimate,
@@ -142,6 +176,19 @@ TimingVerdict judgeTiming(const RecordingSurvey& survey, const TimingEstimate& e
   verdict.proposal.stamp_reference = assumed.stamp_reference;
   verdict.proposal.time_offset_us = assumed.time_offset_ns / kNanosecondsPerMicrosecond;
   verdict.proposal.exposure_time_us = assumed.exposure_time_ns / kNanosecondsPerMicrosecond;
+  const bool corrected = survey.clocks() && survey.clocks()->factor != 1;
+  if (corrected) {
+    verdict.proposal.offset_remark =
+        textOf("for frame stamps %s by %d", survey.clocks()->divided ? "multiplied" : "divided",
+               survey.clocks()->factor);
+  }
+  const std::int64_t rough_ns = survey.roughClockOffsetNs();
+  const bool roughly =
+      std::abs(rough_ns - assumed.time_offset_ns) > RecordingSurvey::kLargestDelay_ns;
+  if (roughly) {  // until the estimate says it better
+    verdict.proposal.time_offset_us =
+        rough_ns / kRoughStep_ns * kRoughStep_ns / kNanosecondsPerMicrosecond;
+  }
   const auto& frames = survey.frames().frames();
   const bool lengths_known = std::any_of(frames.begin(), frames.end(), [&](const LoggedFrame& f) {
     return survey.assumedLengthNs(f) > 0;
@@ -158,18 +205,15 @@ TimingVerdict judgeTiming(const RecordingSurvey& survey, const TimingEstimate& e
                   std::nullopt, 0.0, verdict);
     return verdict;
   }
-  if (estimate.inverted_polarity) {
-    verdict.findings.push_back(
-        {"polarity-inverted", "ON events where frames brighten",
-         textOf("OFF events there (correlation %.2f)", estimate.correlation),
-         "exchange ON and OFF where the recording was converted: fast_edi has no switch for it"});
-    return verdict;
-  }
   if (!estimate.told || estimate.shift_sigma_ns > kLargestSigma_ns) {
     verdict.notes.push_back(
         "stamps, offset and exposure cannot be told: " +
         (estimate.told ? textOf("the shift is uncertain by %.1f ms", estimate.shift_sigma_ns / kMs)
                        : estimate.why_not));
+    if (roughly) {
+      verdict.notes.push_back(
+          "time_offset_us is by the times of recording, good to some ten milliseconds");
+    }
     return verdict;
   }
   verdict.notes.push_back(textOf(
@@ -193,6 +237,13 @@ TimingVerdict judgeTiming(const RecordingSurvey& survey, const TimingEstimate& e
   }
   judgeLength(survey, estimate, verdict, lengths_known);
   judgeThresholds(survey, estimate, verdict);
+  if (estimate.frames_stretched) {
+    verdict.findings.push_back(
+        {"frames-stretched", "frames as the sensor gives them",
+         "every frame spans 0 to 255 exactly, as if each had been stretched to that",
+         "record without normalisation or automatic contrast: thresholds that fit such frames are "
+         "not those of the sensor, and brightness varies from frame to frame"});
+  }
   if (estimate.lengths_one_late) {
     verdict.findings.push_back(
         {"exposure-of-next-frame", "exposure messages that belong to the frame before them",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 
@@ -16,7 +17,6 @@ constexpr double kMs = static_cast<double>(kNanosecondsPerMillisecond);
 constexpr double kCoarsePart = 0.25;
 constexpr double kFinestCoarse_ns = 1.5 * kMs;
 constexpr double kWidestCoarse_ns = 5.0 * kMs;
-constexpr double kLeastCorrelation = 0.3;
 /// An unknown exposure is taken as this part of the frame period to begin with.
 constexpr double kGuessedDuty = 0.3;
 /// Lengths that differ by less do not tell what stamps mean.
@@ -26,7 +26,19 @@ constexpr int kBootstraps = 200;
 /// Of all bootstraps, that a meaning of the stamps must win to be believed.
 constexpr double kBelieved = 0.95;
 /// A length is told when its relative uncertainty is below.
-constexpr double kLargestLengthSigma = 0.12;
+constexpr double kLargestLengthSigma = 0.3;
+/// Grid around the length and the thresholds found [natural log].
+constexpr double kLengthStep = 0.15;
+constexpr int kLengthSteps = 7;
+constexpr double kScaleStep = 0.15;
+constexpr int kScaleSteps = 3;
+/// What a sensor differs by from the model (response, mismatch, noise, filters), which no samples
+/// of one recording show [relative, one sigma]: on simulated recordings, see the tests.
+constexpr double kLengthModelError = 0.18;
+constexpr double kThresholdModelError = 0.10;
+/// Thresholds are looked for within these bounds.
+constexpr double kLeastThreshold = 0.02;
+constexpr double kLargestThreshold = 1.5;
 /// The estimate itself is not better than this, on simulated recordings with known truth.
 constexpr double kSystematic_ns = 0.15 * kMs;
 
@@ -35,6 +47,11 @@ struct Guess {
   WindowModel model;
   ContrastThresholds thresholds;
 };
+
+bool isWithinBounds(const ContrastThresholds& thresholds) {
+  return std::min(thresholds.on, thresholds.off) >= kLeastThreshold &&
+         std::max(thresholds.on, thresholds.off) <= kLargestThreshold;
+}
 
 double mean(const std::vector<double>& values) {
   double sum = 0.0;
@@ -59,6 +76,18 @@ double leastOf(const std::vector<double>& values) {
   const double after = values[least + 1];
   const double bend = before - 2.0 * values[least] + after;
   return bend > 0.0 ? position + 0.5 * (before - after) / bend : position;
+}
+
+/// The least value by the same parabola.
+double leastValue(const std::vector<double>& values) {
+  const auto least =
+      static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
+  if (least == 0 || least + 1 == values.size()) {
+    return values[least];
+  }
+  const double slope = 0.5 * (values[least + 1] - values[least - 1]);
+  const double bend = values[least - 1] - 2.0 * values[least] + values[least + 1];
+  return bend > 0.0 ? values[least] - 0.5 * slope * slope / bend : values[least];
 }
 
 /// Costs of each sample (rows) along some search direction (columns).
@@ -87,28 +116,34 @@ std::vector<std::size_t> drawRows(std::mt19937& random, std::size_t count) {
   return rows;
 }
 
-/// The minimum of a table's column sums and how far it moves when samples are drawn anew.
-Located locate(const CostTable& table) {
+/// Where the column sums of a table are least.
+using Finder = std::function<double(const std::vector<double>& sums)>;
+
+/// \param find by default the minimum itself
+/// \return the minimum of a table's column sums and how far it moves when samples are drawn anew
+Located locate(const CostTable& table, const Finder& find = leastOf) {
   std::vector<std::size_t> all(table.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     all[i] = i;
   }
   Located located;
-  located.position = leastOf(columnSums(table, all));
+  located.position = find(columnSums(table, all));
   std::mt19937 random(1);  // equal recordings give equal reports
   double squares = 0.0;
   for (int i = 0; i < kBootstraps; ++i) {
-    const double drawn = leastOf(columnSums(table, drawRows(random, table.size())));
+    const double drawn = find(columnSums(table, drawRows(random, table.size())));
     squares += (drawn - located.position) * (drawn - located.position);
   }
-  located.sigma = std::sqrt(squares / kBootstraps);
+  // Drawn with replacement, n samples vary by (n - 1) / n of what n new ones would.
+  const auto n = static_cast<double>(table.size());
+  located.sigma = std::sqrt(squares / kBootstraps * (n > 1.0 ? n / (n - 1.0) : 1.0));
   return located;
 }
 
 class Estimator {
  public:
-  Estimator(std::vector<TimingSample>& samples, SensorSize size, const TimingSearch& search)
-      : samples_(samples), search_(search), consistency_(size) {}
+  Estimator(std::vector<TimingSample>& samples, const SampleGrid& grid, const TimingSearch& search)
+      : samples_(samples), grid_(grid), search_(search), consistency_(grid.size()) {}
 
   TimingEstimate run();
 
@@ -120,13 +155,16 @@ class Estimator {
   void descend(bool with_length);
   void chooseReference();
   void refineShift();
+  std::vector<Guess> lengthsByScales() const;
   void checkLength();
+  void checkThresholds();
   std::optional<std::vector<double>> costsAlong(const std::vector<Guess>& guesses,
                                                 TimingSample& sample);
   CostTable table(const std::vector<Guess>& guesses);
   void step(int done);
 
   std::vector<TimingSample>& samples_;
+  const SampleGrid grid_;
   const TimingSearch& search_;
   PairConsistency consistency_;
   Guess best_;
@@ -172,54 +210,22 @@ void Estimator::readLengths() {
 
 /// Over the whole range by correlation; best_ is the shift with the largest one.
 bool Estimator::searchCoarsely() {
-  const double step_ns =
-      std::clamp(kCoarsePart * result_.length_ns, kFinestCoarse_ns, kWidestCoarse_ns);
-  const auto steps = static_cast<int>(static_cast<double>(search_.range_ns) / step_ns);
-  double largest = 0.0;
-  double most_negative = 0.0;
-  double inverted_shift_ns = 0.0;
-  for (int i = -steps; i <= steps; ++i) {
-    Guess guess = best_;
-    guess.model.shift_ns = static_cast<double>(search_.centre_ns) + i * step_ns;
-    double correlation = 0.0;
-    double cost = 0.0;
-    std::size_t covered = 0;
-    for (const TimingSample& sample : samples_) {
-      if (const auto measured = consistency_.measure(sample, guess.model, guess.thresholds)) {
-        correlation += measured->correlation;
-        cost += measured->cost;
-        ++covered;
-      }
-    }
-    // With few samples left a chance agreement would win.
-    if (2 * covered < samples_.size() || covered == 0) {
-      continue;
-    }
-    const auto count = static_cast<double>(covered);
-    correlation /= count;
-    result_.curve.push_back({guess.model.shift_ns, cost / count, correlation});
-    if (correlation > largest) {
-      largest = correlation;
-      best_.model.shift_ns = guess.model.shift_ns;
-    }
-    if (correlation < most_negative) {
-      most_negative = correlation;
-      inverted_shift_ns = guess.model.shift_ns;
-    }
-  }
-  result_.correlation = largest;
-  if (-most_negative > 1.25 * largest && -most_negative > kLeastCorrelation) {
-    result_.inverted_polarity = true;
-    result_.correlation = most_negative;
-    best_.model.shift_ns = inverted_shift_ns;
-    result_.why_not = "polarities are exchanged";
-    return false;
-  }
-  if (largest < kLeastCorrelation) {
+  const ShiftRange shifts{
+      static_cast<double>(search_.centre_ns), static_cast<double>(search_.range_ns),
+      std::clamp(kCoarsePart * result_.length_ns, kFinestCoarse_ns, kWidestCoarse_ns)};
+  const CoarseMatch match =
+      matchOrientations(samples_, grid_, best_.model, best_.thresholds, shifts, consistency_);
+  best_.model.shift_ns = match.shift_ns;
+  result_.curve = match.curve;
+  result_.mapping = match.mapping;
+  result_.correlation = match.correlation;
+  if (!match.fits()) {
     result_.why_not = textOf(
-        "frames and events do not fit together at any shift within %.0f ms (correlation %.2f at "
-        "best, expected at least %.2f): too little motion, or events are missing",
-        static_cast<double>(search_.range_ns) / kMs, largest, kLeastCorrelation);
+        "frames and events do not fit together at any shift within %.0f ms, in no orientation "
+        "(correlation %.2f at best, expected at least %.2f): too little motion, or events are "
+        "missing",
+        static_cast<double>(search_.range_ns) / kMs, match.correlation,
+        CoarseMatch::kLeastCorrelation);
     return false;
   }
   return true;
@@ -275,7 +281,8 @@ void Estimator::descend(bool with_length) {
       for (const double sign : {1.0, -1.0}) {
         Guess trial = best_;
         direction.move(trial, sign * direction.step);
-        const std::optional<double> value = cost(trial);
+        const std::optional<double> value =
+            isWithinBounds(trial.thresholds) ? cost(trial) : std::nullopt;
         if (value && *value < best_cost_) {
           best_ = trial;
           best_cost_ = *value;
@@ -393,33 +400,64 @@ void Estimator::refineShift() {
   result_.told = true;
 }
 
+/// Guesses on a grid: lengths in rows and, for each of them, thresholds scaled in columns. Longer
+/// exposures with smaller thresholds blur edges much the same, so that both vary together.
+std::vector<Guess> Estimator::lengthsByScales() const {
+  std::vector<Guess> guesses;
+  for (int i = -kLengthSteps; i <= kLengthSteps; ++i) {
+    for (int k = -kScaleSteps; k <= kScaleSteps; ++k) {
+      Guess guess = best_;
+      guess.model.length_factor *= std::exp(i * kLengthStep);
+      guess.model.length_ns *= std::exp(i * kLengthStep);
+      guess.thresholds.on *= std::exp(k * kScaleStep);
+      guess.thresholds.off *= std::exp(k * kScaleStep);
+      guesses.push_back(guess);
+    }
+  }
+  return guesses;
+}
+
 /// The length that fits best, against the one known; or the uncertainty of the one found.
 void Estimator::checkLength() {
-  constexpr double kStep = 0.15;  // natural log
-  constexpr int kSteps = 7;
-  std::vector<Guess> guesses;
-  for (int i = -kSteps; i <= kSteps; ++i) {
-    guesses.push_back(best_);
-    guesses.back().model.length_factor *= std::exp(i * kStep);
-    guesses.back().model.length_ns *= std::exp(i * kStep);
-  }
-  const CostTable costs = table(guesses);
+  const CostTable costs = table(lengthsByScales());
   if (costs.size() < 2) {
     return;
   }
-  const Located located = locate(costs);
-  result_.length_factor = std::exp(located.position * kStep);
-  result_.length_sigma = std::max(located.sigma * kStep, 0.02);
+  const Located located = locate(costs, [](const std::vector<double>& sums) {
+    std::vector<double> lengths;
+    for (auto row = sums.begin(); row != sums.end(); row += 2 * kScaleSteps + 1) {
+      lengths.push_back(leastValue({row, row + 2 * kScaleSteps + 1}));
+    }
+    return leastOf(lengths);
+  });
+  result_.length_factor = std::exp(located.position * kLengthStep);
+  result_.length_sigma = std::hypot(located.sigma * kLengthStep, kLengthModelError);
   result_.length_told =
-      result_.length_sigma < kLargestLengthSigma && std::abs(located.position) < kSteps;
+      result_.length_sigma < kLargestLengthSigma && std::abs(located.position) < kLengthSteps;
   if (!lengths_known_) {
     result_.length_ns = best_.model.length_ns * result_.length_factor;
     result_.length_factor = 1.0;
   }
 }
 
+/// How well each of the thresholds is known, the length being that of best_.
+void Estimator::checkThresholds() {
+  for (double ContrastThresholds::*const threshold :
+       {&ContrastThresholds::on, &ContrastThresholds::off}) {
+    std::vector<Guess> guesses;
+    for (int i = -kLengthSteps; i <= kLengthSteps; ++i) {
+      guesses.push_back(best_);
+      guesses.back().thresholds.*threshold *= std::exp(i * kScaleStep);
+    }
+    const CostTable costs = table(guesses);
+    const double sigma = costs.size() < 2 ? 1.0 : locate(costs).sigma * kScaleStep;
+    result_.threshold_sigmas.*threshold = std::hypot(sigma, kThresholdModelError);
+  }
+}
+
 TimingEstimate Estimator::run() {
   result_.samples = samples_.size();
+  result_.frames_stretched = areStretched(samples_);
   if (samples_.size() < 2) {
     result_.why_not = "fewer than two pairs of frames have all events around them";
     return result_;
@@ -440,6 +478,7 @@ TimingEstimate Estimator::run() {
   step(4);
   if (result_.told) {
     checkLength();
+    checkThresholds();
   }
   step(kStages);
   return result_;
@@ -447,9 +486,9 @@ TimingEstimate Estimator::run() {
 
 }  // namespace
 
-TimingEstimate estimateTiming(std::vector<TimingSample>& samples, SensorSize size,
+TimingEstimate estimateTiming(std::vector<TimingSample>& samples, const SampleGrid& grid,
                               const TimingSearch& search) {
-  return Estimator(samples, size, search).run();
+  return Estimator(samples, grid, search).run();
 }
 
 }  // namespace fast_edi

@@ -54,7 +54,7 @@ class PairConsistencySimulation : public ::testing::Test {
       image.step = simulated.blurry.step;
       sampler.addFrame(i, frame, image);
     }
-    size_ = sampler.sampleSize();
+    size_ = sampler.grid().size();
     sample_ = std::move(sampler.take().at(0));
   }
 

@@ -1,14 +1,13 @@
 // Simulated recordings through the whole validator: exposures, stamps and clocks that are known.
 #include "fast_edi/validation/recording_validator.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
 #include <gmock/gmock.h>
 
-#include "fast_edi/simulation/davis_simulator.hpp"
-#include "fast_edi/simulation/recording_faults.hpp"
-#include "support/event_generators.hpp"
+#include "validation/simulated_recording.hpp"
 #include "validation/synthetic_recording.hpp"
 
 namespace fast_edi {
@@ -16,8 +15,12 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::Field;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::namesOf;
+using ::testing::Not;
+using testing::SimulatedRecording;
 
 constexpr double kMs = static_cast<double>(kNanosecondsPerMillisecond);
 
@@ -32,86 +35,22 @@ SimulationSettings settings(double swing) {
   return settings;
 }
 
-/// A simulation, told to a validator in messages that may lie.
-class Recording {
- public:
-  explicit Recording(double swing)
-      : settings_(settings(swing)), sequence_(simulateSequence(settings_)) {}
-
-  struct Told {
-    ExposureInstant stamp = ExposureInstant::kMid;
-    std::string fault;  ///< of the events' clock and polarity
-    bool exposures = true;
-    int exposure_of = 0;  ///< 1: of the next frame
-    AssumedParameters parameters;
-  };
-
-  ValidationReport validate(const Told& told) const {
-    RecordingFaults faults;
-    if (!told.fault.empty()) {
-      plantFault(told.fault, faults);
-    }
-    FaultyStream faulty(faults, settings_.sensor.size, settings_.timing);
-    std::vector<Event> events = sequence_.events;
-    faulty.apply({}, events);
-    for (Event& event : events) {
-      event.t_ns = faulty.eventStamp(event.t_ns);
-    }
-    const std::vector<std::uint8_t> wire = testing::toWire(events);
-    AssumedParameters parameters = told.parameters;
-    parameters.thresholds = settings_.sensor.thresholds;
-    parameters.thresholds_given = true;
-    RecordingValidator validator(parameters);
-    tell(told, testing::wireView(wire), validator);
-    if (validator.endSurvey()) {
-      tell(told, testing::wireView(wire), validator);
-    }
-    return validator.finish(nullptr);
-  }
-
- private:
-  void tell(const Told& told, const WireEvents& events, RecordingValidator& validator) const {
-    const std::int64_t end_ns = sequence_.frames.back().exposure.end_ns;
-    validator.addEvents(events, settings_.sensor.size, 0, end_ns);
-    for (std::size_t i = 0; i < sequence_.frames.size(); ++i) {
-      const SimulatedFrame& simulated = sequence_.frames[i];
-      FrameMessage frame;
-      frame.stamp_ns = simulated.exposure.at(told.stamp);
-      frame.sequence = static_cast<std::uint32_t>(i);
-      frame.record_ns = simulated.exposure.end_ns;
-      frame.size = settings_.sensor.size;
-      frame.pixels.data = simulated.blurry.data;
-      frame.pixels.size = frame.size;
-      frame.pixels.step = simulated.blurry.step;
-      validator.addFrame(frame);
-      if (told.exposures) {
-        validator.addExposure(static_cast<std::int32_t>(settings_.timing.exposureUs(
-                                  static_cast<int>(i) + told.exposure_of)),
-                              frame.record_ns + kNanosecondsPerMicrosecond);
-      }
-    }
-  }
-
-  SimulationSettings settings_;
-  SimulatedSequence sequence_;
-};
-
 class RecordingValidatorTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    equal_ = std::make_unique<Recording>(0.0);
-    varying_ = std::make_unique<Recording>(0.4);
+    equal_ = std::make_unique<SimulatedRecording>(settings(0.0));
+    varying_ = std::make_unique<SimulatedRecording>(settings(0.4));
   }
   static void TearDownTestSuite() {
     equal_.reset();
     varying_.reset();
   }
-  static std::unique_ptr<Recording> equal_;
-  static std::unique_ptr<Recording> varying_;
+  static std::unique_ptr<SimulatedRecording> equal_;
+  static std::unique_ptr<SimulatedRecording> varying_;
 };
 
-std::unique_ptr<Recording> RecordingValidatorTest::equal_;
-std::unique_ptr<Recording> RecordingValidatorTest::varying_;
+std::unique_ptr<SimulatedRecording> RecordingValidatorTest::equal_;
+std::unique_ptr<SimulatedRecording> RecordingValidatorTest::varying_;
 
 TEST_F(RecordingValidatorTest, ACleanRecordingHasNoFindings) {
   const ValidationReport report = equal_->validate({});
@@ -124,7 +63,7 @@ TEST_F(RecordingValidatorTest, ACleanRecordingHasNoFindings) {
 }
 
 TEST_F(RecordingValidatorTest, StampsAtStartAndEndAreNamed) {
-  Recording::Told told;
+  SimulatedRecording::Told told;
   told.stamp = ExposureInstant::kStart;
   EXPECT_EQ(equal_->validate(told).proposal.stamp_reference, ExposureInstant::kStart);
   told.parameters.stamp_reference = ExposureInstant::kStart;
@@ -138,7 +77,7 @@ TEST_F(RecordingValidatorTest, StampsAtStartAndEndAreNamed) {
 TEST_F(RecordingValidatorTest, AnOffsetIsFoundWithinAMillisecond) {
   const double clean_ns = equal_->validate({}).timing.shift_ns;
   for (const double offset_ms : {-7.0, 4.0}) {
-    Recording::Told told;
+    SimulatedRecording::Told told;
     told.fault = "clock-offset=" + std::to_string(static_cast<int>(offset_ms * 1e3));
     const ValidationReport report = equal_->validate(told);
     EXPECT_NEAR(report.timing.shift_ns - clean_ns, offset_ms * kMs, 0.3 * kMs);
@@ -147,7 +86,7 @@ TEST_F(RecordingValidatorTest, AnOffsetIsFoundWithinAMillisecond) {
 }
 
 TEST_F(RecordingValidatorTest, VaryingExposuresSeparateStampsAndOffset) {
-  Recording::Told told;
+  SimulatedRecording::Told told;
   told.stamp = ExposureInstant::kStart;
   told.fault = "clock-offset=6000";
   const ValidationReport report = varying_->validate(told);
@@ -158,27 +97,81 @@ TEST_F(RecordingValidatorTest, VaryingExposuresSeparateStampsAndOffset) {
 }
 
 TEST_F(RecordingValidatorTest, ExposuresOfTheNextFrameAreNoticed) {
-  Recording::Told told;
+  SimulatedRecording::Told told;
   told.exposure_of = 1;
   EXPECT_THAT(namesOf(varying_->validate(told).findings), ElementsAre("exposure-of-next-frame"));
 }
 
 TEST_F(RecordingValidatorTest, AnUnknownExposureIsEstimated) {
-  Recording::Told told;
+  SimulatedRecording::Told told;
   told.exposures = false;
   const ValidationReport report = equal_->validate(told);
   EXPECT_THAT(namesOf(report.findings), ElementsAre("exposure-missing"));
   EXPECT_NEAR(static_cast<double>(report.proposal.exposure_time_us), 20'000.0, 4'000.0);
 }
 
-TEST_F(RecordingValidatorTest, InvertedPolaritiesAreNamed) {
-  Recording::Told told;
+TEST_F(RecordingValidatorTest, InvertedPolaritiesAreNamedAndTheRestIsToldAllTheSame) {
+  SimulatedRecording::Told told;
   told.fault = "invert-polarity";
-  EXPECT_THAT(namesOf(equal_->validate(told).findings), ElementsAre("polarity-inverted"));
+  told.exposures = false;
+  const ValidationReport report = equal_->validate(told);
+  EXPECT_THAT(namesOf(report.findings), ElementsAre("exposure-missing", "polarity-inverted"));
+  EXPECT_EQ(report.findings[1].set, "event_polarity: inverted");
+  EXPECT_EQ(report.proposal.event_mapping.polarity, EventPolarity::kInverted);
+  EXPECT_NEAR(static_cast<double>(report.proposal.exposure_time_us), 20'000.0, 4'000.0);
+}
+
+TEST_F(RecordingValidatorTest, EachOrientationIsNamed) {
+  for (std::size_t i = 1; i < kEventOrientations.size(); ++i) {
+    SimulatedRecording::Told told;
+    told.fault = "event-orientation=" + std::to_string(i);
+    const ValidationReport report = equal_->validate(told);
+    const std::string word = kEventOrientations[i].first;
+    ASSERT_THAT(namesOf(report.findings), Contains("orientation")) << word;
+    EXPECT_EQ(report.proposal.event_mapping.orientation, kEventOrientations[i].second) << word;
+    EXPECT_THAT(report.findings, Contains(Field(&Finding::set, "event_orientation: " + word)));
+    EXPECT_TRUE(report.timing.told);
+    EXPECT_NEAR(report.timing.shift_ns, 0.0, 0.8 * kMs) << word;
+  }
+}
+
+TEST_F(RecordingValidatorTest, CoordinatesFromOneAreNamed) {
+  SimulatedRecording::Told told;
+  told.fault = "coordinates-from";
+  EXPECT_THAT(namesOf(equal_->validate(told).findings), Contains("coordinates-from-1"));
+  told.fault = "event-hole";
+  EXPECT_THAT(namesOf(equal_->validate(told).findings), Not(Contains("coordinates-from-1")));
+}
+
+TEST_F(RecordingValidatorTest, DoubledFrameStampsAreNamedAndTheRestIsForTheirHalves) {
+  SimulatedRecording::Told told;
+  told.fault = "frame-stamps-times";
+  const ValidationReport report = equal_->validate(told);
+  const auto found = std::find_if(report.findings.begin(), report.findings.end(),
+                                  [](const Finding& f) { return f.name == "clocks-differ"; });
+  ASSERT_NE(found, report.findings.end());
+  EXPECT_THAT(found->found, HasSubstr("frame stamps are exactly doubled"));
+  EXPECT_EQ(report.proposal.offset_remark, "for frame stamps divided by 2");
+  EXPECT_EQ(report.proposal.time_offset_us, 0);
+  EXPECT_TRUE(report.timing.told);
+  EXPECT_EQ(report.counters.frames_deblurred, 0u);
+}
+
+TEST_F(RecordingValidatorTest, ClocksSecondsApartAreToldByHowMuch) {
+  for (const std::int64_t offset_ms : {5'000, -40'000}) {
+    SimulatedRecording::Told told;
+    told.fault = "clock-offset=" + std::to_string(1000 * offset_ms);
+    const ValidationReport report = equal_->validate(told);
+    EXPECT_THAT(namesOf(report.findings), Contains("clocks-differ"));
+    EXPECT_NEAR(static_cast<double>(report.proposal.time_offset_us), 1e3 * offset_ms, 1000.0);
+    EXPECT_EQ(report.counters.frames_deblurred, 0u);
+    EXPECT_GE(report.counters.frames_passed[static_cast<std::size_t>(PassReason::kClocksDiffer)],
+              7u);
+  }
 }
 
 TEST_F(RecordingValidatorTest, OnePolarityTellsNothingOfStamps) {
-  Recording::Told told;
+  SimulatedRecording::Told told;
   told.fault = "suppress-on";
   const ValidationReport report = equal_->validate(told);
   EXPECT_THAT(namesOf(report.findings), ElementsAre("polarity-missing"));

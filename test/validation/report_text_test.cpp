@@ -22,10 +22,12 @@ std::string printed(const ValidationReport& report) {
 TEST(ReportTextTest, EndsWithLinesForAYamlFile) {
   ValidationReport report;
   report.notes = {"a note"};
+  report.outcomes = "11 deblurred";
   report.proposal = {ExposureInstant::kStart, -1500, 0};
   const std::string text = printed(report);
   EXPECT_THAT(text, HasSubstr("frames: 12, every 40.0 ms; exposure messages: 12"));
   EXPECT_THAT(text, HasSubstr("sensor 16x16"));
+  EXPECT_THAT(text, HasSubstr("with these parameters: 11 deblurred\n"));
   EXPECT_THAT(text, HasSubstr("note: a note"));
   const std::string intro = "no findings; proposal:\n\n";
   ASSERT_THAT(text, HasSubstr(intro));
@@ -40,7 +42,7 @@ TEST(ReportTextTest, FindingsSayWhatWasExpectedFoundAndIsToBeSet) {
   report.findings = {{"a-name", "this", "that", "something"}};
   EXPECT_THAT(printed(report),
               HasSubstr("[a-name]\n  expected: this\n  found:    that\n  set:      something\n"));
-  EXPECT_THAT(printed(report), HasSubstr("1 findings; proposal:"));
+  EXPECT_THAT(printed(report), HasSubstr("1 finding; proposal:"));
 }
 
 }  // namespace

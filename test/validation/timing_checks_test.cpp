@@ -8,10 +8,13 @@
 namespace fast_edi {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::namesOf;
+using ::testing::Not;
 using testing::SyntheticRecording;
 
 constexpr double kMs = static_cast<double>(SyntheticRecording::kMs);
@@ -88,7 +91,7 @@ TEST(TimingChecksTest, WhatCannotBeToldIsSaid) {
   EXPECT_THAT(judge(vague).notes, ElementsAre(HasSubstr("uncertain by 5.0 ms")));
 }
 
-TEST(TimingChecksTest, LengthThresholdsAndPolarityAreJudged) {
+TEST(TimingChecksTest, LengthAndThresholdsAreJudged) {
   TimingEstimate wrong = estimate(0.0);
   wrong.length_factor = 2.0;
   const TimingVerdict verdict = judge(wrong);
@@ -99,12 +102,30 @@ TEST(TimingChecksTest, LengthThresholdsAndPolarityAreJudged) {
   given.parameters.thresholds_given = true;
   TimingEstimate doubled = estimate(0.0);
   doubled.thresholds = {0.5, 0.5};
+  doubled.threshold_sigmas = {0.1, 0.1};
   EXPECT_THAT(namesOf(judge(doubled, given).findings), ElementsAre("contrast"));
+  EXPECT_THAT(judge(doubled, given).findings[0].set, HasSubstr("contrast_threshold_on: 0.50"));
   EXPECT_THAT(judge(doubled).findings, IsEmpty());
+  doubled.threshold_sigmas = {0.6, 0.6};
+  EXPECT_THAT(judge(doubled, given).findings, IsEmpty());
+}
 
-  TimingEstimate inverted;
-  inverted.inverted_polarity = true;
-  EXPECT_THAT(namesOf(judge(inverted).findings), ElementsAre("polarity-inverted"));
+TEST(TimingChecksTest, ThresholdsThatWouldBeWarnedOfAreNoProposal) {
+  SyntheticRecording given;
+  given.parameters.thresholds_given = true;
+  TimingEstimate unusual = estimate(0.0);
+  unusual.threshold_sigmas = {0.1, 0.1};
+  unusual.thresholds = {0.85, 0.66};
+  TimingVerdict verdict = judge(unusual, given);
+  EXPECT_THAT(namesOf(verdict.findings), ElementsAre("contrast"));
+  EXPECT_THAT(verdict.findings[0].set, Not(HasSubstr("contrast_threshold_on")));
+  EXPECT_THAT(verdict.notes,
+              Contains(AllOf(HasSubstr("ON 0.85 +- 0.09"),
+                             HasSubstr("not proposed, because the ON contrast threshold"))));
+  unusual.frames_stretched = true;
+  verdict = judge(unusual, given);
+  EXPECT_THAT(namesOf(verdict.findings), ElementsAre("contrast", "frames-stretched"));
+  EXPECT_THAT(verdict.notes, Contains(HasSubstr("these frames were stretched")));
 }
 
 TEST(TimingChecksTest, AnUnknownExposureIsProposed) {

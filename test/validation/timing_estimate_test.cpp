@@ -30,8 +30,10 @@ TimingSample noise(unsigned seed) {
     frame->length_ns = 20 * kMs;
     stamp_ns += 40 * kMs;
     for (std::size_t i = 0; i < kSize.pixelCount(); ++i) {
-      frame->log_exposure.push_back(4.0F + static_cast<float>(random() % 100) * 0.01F);
+      frame->levels.push_back(static_cast<std::uint8_t>(50 + random() % 100));
     }
+    frame->size = kSize;
+    readExposure(*frame, SampleGrid{kSize, 1}, EventOrientation::kNormal);
   }
   return sample;
 }
@@ -43,7 +45,7 @@ TEST(TimingEstimateTest, NoiseTellsNothing) {
   }
   TimingSearch search;
   search.range_ns = 50 * kMs;
-  const TimingEstimate estimate = estimateTiming(samples, kSize, search);
+  const TimingEstimate estimate = estimateTiming(samples, SampleGrid{kSize, 1}, search);
   EXPECT_FALSE(estimate.told);
   EXPECT_THAT(estimate.why_not, HasSubstr("do not fit together"));
 }
@@ -51,7 +53,7 @@ TEST(TimingEstimateTest, NoiseTellsNothing) {
 TEST(TimingEstimateTest, OnePairIsNotEnough) {
   std::vector<TimingSample> samples;
   samples.push_back(noise(1));
-  const TimingEstimate estimate = estimateTiming(samples, kSize, TimingSearch{});
+  const TimingEstimate estimate = estimateTiming(samples, SampleGrid{kSize, 1}, TimingSearch{});
   EXPECT_FALSE(estimate.told);
   EXPECT_THAT(estimate.why_not, HasSubstr("fewer than two pairs"));
 }

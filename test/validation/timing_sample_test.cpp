@@ -1,6 +1,7 @@
 // Samples taken out of a recording.
 #include "fast_edi/validation/timing_sample.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -51,7 +52,7 @@ TEST(TimingSamplerTest, TakesTheFramesAndEventsAskedFor) {
 TEST(TimingSamplerTest, LeavesOutRowsOfLargeSensors) {
   constexpr SensorSize kSize{346, 260};
   TimingSampler sampler(kSize, {{0, {0, 10'000}}});
-  EXPECT_EQ(sampler.sampleSize(), (SensorSize{346, 65}));
+  EXPECT_EQ(sampler.grid().size(), (SensorSize{346, 65}));
   const std::vector<std::uint8_t> wire =
       testing::toWire({{7, 3, 1'000, true}, {7, 4, 2'000, true}});
   sampler.addEvents(testing::wireView(wire), kSize);
@@ -67,6 +68,26 @@ TEST(TimingSamplerTest, LeavesOutRowsOfLargeSensors) {
   ASSERT_EQ(samples[0].events->eventCount(), 1U);
   EXPECT_EQ(samples[0].events->span(0, 1).data[0].code >> 1, 346U + 7U);
   EXPECT_EQ(samples[0].first.log_exposure.size(), 346U * 65U);
+}
+
+std::vector<TimingSample> samplesOf(std::uint8_t darkest, std::uint8_t brightest, int at_ends) {
+  std::vector<TimingSample> samples(2);
+  for (TimingSample& sample : samples) {
+    for (SampledFrame* frame : {&sample.first, &sample.second}) {
+      frame->levels.assign(10'000, 100);
+      std::fill_n(frame->levels.begin(), at_ends, darkest);
+      std::fill_n(frame->levels.begin() + at_ends, at_ends, brightest);
+    }
+  }
+  return samples;
+}
+
+TEST(TimingSampleTest, StretchedFramesUseAllLevelsWithFewPixelsAtTheEnds) {
+  EXPECT_TRUE(areStretched(samplesOf(0, 255, 3)));
+  EXPECT_FALSE(areStretched(samplesOf(4, 255, 3)));
+  EXPECT_FALSE(areStretched(samplesOf(0, 250, 3)));
+  EXPECT_FALSE(areStretched(samplesOf(0, 255, 300)));  // saturated, as sensors are
+  EXPECT_FALSE(areStretched({}));
 }
 
 }  // namespace

@@ -49,8 +49,15 @@ class EventStatistics {
   std::uint64_t on() const { return on_; }
   std::uint64_t off() const { return off_; }
   std::uint64_t outside() const { return outside_; }  ///< not on the sensor
+  /// Largest coordinates of all events, those outside among them; -1 without events.
+  int largestX() const { return largest_x_; }
+  int largestY() const { return largest_y_; }
+  std::uint64_t inColumn(int x) const;
+  std::uint64_t inRow(int y) const;
   /// From a pixel's event to its next.
   const TimeHistogram& pixelTimes() const { return pixel_times_; }
+  /// Pixels whose shortest time from event to event lies in [\p from_ns, \p to_ns).
+  std::size_t pixelsWithShortest(double from_ns, double to_ns) const;
   /// From the latest event of the eight neighbours to an event.
   const TimeHistogram& neighbourTimes() const { return neighbour_times_; }
   /// Pixels that fire all the time and far more than those around them, fastest first.
@@ -76,8 +83,11 @@ class EventStatistics {
   std::uint64_t on_ = 0;
   std::uint64_t off_ = 0;
   std::uint64_t outside_ = 0;
+  int largest_x_ = -1;
+  int largest_y_ = -1;
   std::vector<std::int64_t> last_ns_;  ///< of each pixel, with a border of one
   std::vector<std::uint32_t> counts_;
+  std::vector<std::int64_t> shortest_ns_;   ///< from event to event, of each pixel
   std::vector<std::uint32_t> busy_slices_;  ///< of each pixel
   std::vector<std::int64_t> last_slice_;
   TimeHistogram pixel_times_;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fast_edi/core/event_mapping.hpp"
 #include "fast_edi/core/types.hpp"
 
 namespace fast_edi {
@@ -24,6 +25,8 @@ struct ParameterProposal {
   ExposureInstant stamp_reference = ExposureInstant::kMid;
   std::int64_t time_offset_us = 0;
   std::int64_t exposure_time_us = 0;  ///< 0: the exposure topic has it, or it cannot be told
+  EventMapping event_mapping;
+  std::string offset_remark;  ///< what time_offset_us supposes, if anything
 };
 
 /// "start", "mid" or "end".

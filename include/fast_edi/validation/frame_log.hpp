@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -44,6 +45,7 @@ class FrameLog {
   void addExposure(std::int32_t exposure_us, std::int64_t record_ns);
   /// No message will come any more.
   void finish();
+  void changeStamps(const std::function<std::int64_t(std::int64_t stamp_ns)>& change);
 
   const std::vector<LoggedFrame>& frames() const { return frames_; }
   const DeblurCounters& counters() const { return counters_; }  ///< exposures_...

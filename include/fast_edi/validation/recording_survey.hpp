@@ -12,6 +12,7 @@
 #include "fast_edi/core/event_wire.hpp"
 #include "fast_edi/core/sequence_gaps.hpp"
 #include "fast_edi/core/types.hpp"
+#include "fast_edi/validation/clock_relation.hpp"
 #include "fast_edi/validation/event_statistics.hpp"
 #include "fast_edi/validation/event_timeline.hpp"
 #include "fast_edi/validation/frame_log.hpp"
@@ -33,6 +34,10 @@ class RecordingSurvey {
   /// Shorter exposures are rather values in milliseconds.
   static constexpr std::int64_t kLeastExposure_us = 100;
 
+  /// Messages are recorded this long after their stamps at most: clocks that seem to differ by more
+  /// do differ.
+  static constexpr std::int64_t kLargestDelay_ns = 300 * kNanosecondsPerMillisecond;
+
   explicit RecordingSurvey(const AssumedParameters& parameters) : parameters_(parameters) {}
 
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
@@ -49,8 +54,12 @@ class RecordingSurvey {
   /// Event arrays by the size that they state, as {width, height}.
   const std::map<std::pair<int, int>, std::uint64_t>& eventSizes() const { return event_sizes_; }
   std::uint64_t arrayGaps() const { return array_gaps_; }
-  /// Events minus frames by the times at which both were recorded: good to some ten milliseconds.
-  std::int64_t roughClockOffsetNs() const;
+  /// By the times at which messages were recorded, from finish() on; empty without frames or
+  /// events.
+  const std::optional<ClockRelation>& clocks() const { return clocks_; }
+  /// Events minus frames, from finish() on: good to some ten milliseconds. Where frame stamps were
+  /// multiplied by a simple number, frames() has them with that undone, and this is for those.
+  std::int64_t roughClockOffsetNs() const { return rough_offset_ns_; }
   /// Typical value of the exposure messages, 0 = none [us].
   std::int64_t typicalExposureUs() const;
   /// False when the exposure messages cannot be exposure times in microseconds.
@@ -68,8 +77,16 @@ class RecordingSurvey {
   std::map<std::pair<int, int>, std::uint64_t> event_sizes_;
   SequenceGaps sequence_gaps_;
   std::uint64_t array_gaps_ = 0;
-  bool use_messages_ = false;                  ///< exposure messages, from finish() on
-  std::vector<std::int64_t> array_delays_ns_;  ///< recorded - last event
+  bool use_messages_ = false;  ///< exposure messages, from finish() on
+  struct ArrayReading {
+    ClockReading clock;
+    std::size_t epoch;
+  };
+  void relate();
+
+  std::vector<ArrayReading> arrays_;
+  std::optional<ClockRelation> clocks_;
+  std::int64_t rough_offset_ns_ = 0;
 };
 
 }  // namespace fast_edi

@@ -12,6 +12,7 @@
 
 #include "fast_edi/validation/coverage_checks.hpp"
 #include "fast_edi/validation/finding.hpp"
+#include "fast_edi/validation/frame_outcomes.hpp"
 #include "fast_edi/validation/recording_survey.hpp"
 #include "fast_edi/validation/timing_estimate.hpp"
 #include "fast_edi/validation/timing_sample.hpp"
@@ -19,6 +20,8 @@
 namespace fast_edi {
 
 struct ValidationReport {
+  DeblurCounters counters;  ///< what became of the frames, with the parameters as given
+  std::string outcomes;     ///< the same for people
   std::vector<Finding> findings;
   std::vector<std::string> notes;
   ParameterProposal proposal;
@@ -27,7 +30,8 @@ struct ValidationReport {
 
 class RecordingValidator {
  public:
-  explicit RecordingValidator(const AssumedParameters& parameters);
+  /// \param pipeline with which the frames' outcomes are counted
+  RecordingValidator(const AssumedParameters& parameters, const DeblurParameters& pipeline);
 
   /// Messages in the order of their record times, in both passes the same ones.
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
@@ -42,7 +46,10 @@ class RecordingValidator {
   const RecordingSurvey& survey() const { return survey_; }
 
  private:
+  EventMapping mapping_;              ///< as given
+  std::vector<std::uint8_t> mapped_;  ///< an array's records
   RecordingSurvey survey_;
+  FrameOutcomes outcomes_;
   TimingSearch search_;
   std::unique_ptr<TimingSampler> sampler_;  ///< during the second pass
   std::size_t sampled_frames_ = 0;

@@ -2,7 +2,8 @@
 /// Where the exposures lie, from frames and events alone: meaning of the stamps, offset of the
 /// clocks, length of the exposure and, on the way, contrast thresholds.
 ///
-/// Search: by correlation over a wide range of shifts, then by cost (pair_consistency.hpp) over
+/// Search: by correlation over a wide range of shifts and, if need be, over orientations and
+/// polarity of the events (coarse_match.hpp), then by cost (pair_consistency.hpp) over
 /// shift, thresholds and, where it is not known, length. Uncertainty: bootstrap over the samples.
 ///
 /// The shift contains the delay of the pixels' photoreceptors, which is half a millisecond in
@@ -21,6 +22,7 @@
 
 #include "fast_edi/core/contrast_threshold.hpp"
 #include "fast_edi/core/types.hpp"
+#include "fast_edi/validation/coarse_match.hpp"
 #include "fast_edi/validation/timing_sample.hpp"
 
 namespace fast_edi {
@@ -38,8 +40,8 @@ struct TimingEstimate {
   std::size_t samples = 0;
   double correlation = 0.0;  ///< of what frames and events say, at the best shift
 
-  bool inverted_polarity = false;  ///< nothing below is told then
-  double shift_ns = 0.0;           ///< middle of the exposure - stamp, in event time
+  EventMapping mapping;   ///< what fits events to frames; what follows is for events so turned
+  double shift_ns = 0.0;  ///< middle of the exposure - stamp, in event time
   double shift_sigma_ns = 0.0;
   double length_ns = 0.0;  ///< mean, as known or as found
 
@@ -53,17 +55,16 @@ struct TimingEstimate {
   double length_sigma = 0.0;  ///< relative
   bool length_told = false;
   ContrastThresholds thresholds;
+  ContrastThresholds threshold_sigmas{1.0, 1.0};  ///< relative
 
-  struct CurvePoint {
-    double shift_ns;
-    double cost;
-    double correlation;
-  };
-  std::vector<CurvePoint> curve;  ///< for a picture
+  bool frames_stretched = false;  ///< areStretched(): thresholds are not those of the sensor
+
+  std::vector<ShiftPoint> curve;  ///< for a picture
 };
 
-/// \param size TimingSampler::sampleSize()
-TimingEstimate estimateTiming(std::vector<TimingSample>& samples, SensorSize size,
+/// \param samples are turned to the mapping that is found
+/// \param grid TimingSampler::grid()
+TimingEstimate estimateTiming(std::vector<TimingSample>& samples, const SampleGrid& grid,
                               const TimingSearch& search);
 
 }  // namespace fast_edi

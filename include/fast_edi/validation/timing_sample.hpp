@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "fast_edi/core/event_mapping.hpp"
 #include "fast_edi/core/event_wire.hpp"
 #include "fast_edi/core/image.hpp"
 #include "fast_edi/core/pixel_event_lists.hpp"
@@ -18,7 +19,10 @@ struct SampledFrame {
   std::int64_t stamp_ns = 0;
   std::int64_t length_ns = 0;           ///< of its exposure by its own message, 0 = not known
   std::int64_t previous_length_ns = 0;  ///< by the message of the frame before, 0 = not known
-  std::vector<float> log_exposure;      ///< row-major [natural log]; NaN: black or saturated
+  /// Of the sample's pixels, row-major [natural log]; NaN: black, saturated or not in the frame.
+  std::vector<float> log_exposure;
+  std::vector<std::uint8_t> levels;  ///< the whole frame, row-major [8-bit DN]
+  SensorSize size;
 };
 
 struct TimingSample {
@@ -34,10 +38,32 @@ struct SampleRequest {
   ExposureInterval events;
 };
 
+/// Which of the event sensor's pixels the samples have: every row_step-th row.
+struct SampleGrid {
+  SensorSize sensor;
+  int row_step = 1;
+
+  /// Of the samples: the sensor's width and the number of rows taken.
+  SensorSize size() const { return {sensor.width, (sensor.height + row_step - 1) / row_step}; }
+};
+
+/// Fills in log_exposure: what the frame shows where the events of each of the sample's pixels
+/// belong when they are turned as \p orientation says.
+void readExposure(SampledFrame& frame, const SampleGrid& grid, EventOrientation orientation);
+
+/// True when each frame uses 0..255 to the last with hardly a pixel at either end: its contrast was
+/// stretched, by a factor and an offset of its own. A sensor's frames have a black level, or areas
+/// that are saturated.
+bool areStretched(const std::vector<TimingSample>& samples);
+
+/// Exchanges ON and OFF.
+void invertPolarity(TimingSample& sample);
+
 /// Picks the samples out of a recording that is read once more. Of large sensors every n-th row is
 /// taken: some ten thousand pixels say enough, and the estimate reads them hundreds of times.
 class TimingSampler {
  public:
+  /// \param size of the event sensor; frames may have it with the axes exchanged
   /// \param requests in the order of their frames
   TimingSampler(SensorSize size, const std::vector<SampleRequest>& requests);
 
@@ -48,8 +74,7 @@ class TimingSampler {
 
   /// Those that are complete. Empties the sampler.
   std::vector<TimingSample> take();
-  /// Of the samples: the sensor's width and the number of rows taken.
-  SensorSize sampleSize() const { return sample_size_; }
+  const SampleGrid& grid() const { return grid_; }
 
  private:
   struct Slot {
@@ -59,11 +84,7 @@ class TimingSampler {
     bool has_second = false;
   };
 
-  std::vector<float> logExposure(const ImageView& image) const;
-
-  SensorSize size_;
-  int row_step_;
-  SensorSize sample_size_;
+  SampleGrid grid_;
   std::vector<Slot> slots_;
 };
 
