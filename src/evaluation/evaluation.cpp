@@ -82,6 +82,7 @@ void EvaluationRecorder::add(const ComparedFrame& frame) {
   std::array<cv::Mat, kMethodCount> images = frame.images;
   const cv::Mat truth = truth_(frame.stamp_ns);
   images[indexOf(Method::kTruth)] = truth;
+  const TrueFrame true_frame = scorer_.trueFrame(truth);
 
   FrameFigures figures;
   figures.stamp_ns = frame.stamp_ns;
@@ -97,7 +98,7 @@ void EvaluationRecorder::add(const ComparedFrame& frame) {
     // Comparing the truth with itself says nothing.
     const bool is_truth = method == indexOf(Method::kTruth);
     figures.scores[method] =
-        scorer_.score(images[method], is_truth ? cv::Mat() : truth, memories_[method]);
+        scorer_.score(images[method], is_truth ? TrueFrame() : true_frame, memories_[method]);
   }
   if (evaluation_.frames.empty() || frame.events > example_events_) {
     example_events_ = frame.events;

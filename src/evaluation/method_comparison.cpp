@@ -11,6 +11,7 @@
 #include "fast_edi/core/double_integral.hpp"
 #include "fast_edi/core/event_stream.hpp"
 #include "fast_edi/evaluation/image_metrics.hpp"
+#include "pipeline.hpp"
 
 namespace fast_edi {
 namespace {
@@ -20,63 +21,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::int64_t kDecaysPerExposure = 10;  // of the event map, see eventEdgeMap()
 
 constexpr std::array<Method, 3> kPipelines = {Method::kPlain, Method::kCounter, Method::kOurs};
-
-double millisecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-ImageView viewOf(const cv::Mat& image) {
-  return {image.data, {image.cols, image.rows}, image.step[0], PixelFormat::kMono8};
-}
-
-MutableImageView mutableViewOf(cv::Mat& image) {
-  return {image.data, {image.cols, image.rows}, image.step[0], PixelFormat::kMono8};
-}
-
-/// A Deblurrer with a queue behind it, and a clock around it.
-class Pipeline : public FrameSink {
- public:
-  struct Finished {
-    OutputFrame output;
-    cv::Mat image;
-    double runtime_ms = 0.0;
-  };
-
-  explicit Pipeline(const DeblurParameters& parameters) : deblurrer_(parameters, *this) {}
-
-  template <typename Call>
-  void run(Call call) {
-    call_start_ = Clock::now();
-    call(deblurrer_);
-    spent_ms_ += millisecondsSince(call_start_);
-  }
-
-  MutableImageView begin(const InputFrame& input) override {
-    image_ = cv::Mat(input.image.size.height, input.image.size.width, CV_8UC1);
-    return mutableViewOf(image_);
-  }
-
-  void finish(const OutputFrame& output) override {
-    finished_.push_back({output, image_, spent_ms_ + millisecondsSince(call_start_)});
-    spent_ms_ = 0.0;
-    call_start_ = Clock::now();
-  }
-
-  bool hasFinished() const { return !finished_.empty(); }
-  Finished take() {
-    Finished front = std::move(finished_.front());
-    finished_.pop_front();
-    return front;
-  }
-  const DeblurCounters& counters() const { return deblurrer_.counters(); }
-
- private:
-  cv::Mat image_;
-  std::deque<Finished> finished_;
-  Clock::time_point call_start_;
-  double spent_ms_ = 0.0;
-  Deblurrer deblurrer_;
-};
 
 /// EDI with the contrast found by sharpness, for windows that some other method has found out.
 class SearchingEdi {
@@ -204,15 +148,10 @@ class MethodComparison::Impl {
   }
 
   void addFrame(std::int64_t stamp_ns, const cv::Mat& image, std::int64_t now_ns) {
-    InputFrame frame;
-    frame.stamp_ns = stamp_ns;
-    frame.supported = !image.empty();
-    if (frame.supported) {
+    if (!image.empty()) {
       requireMono8(image, "frame");
-      const auto owner = std::make_shared<const cv::Mat>(image.clone());
-      frame.image = viewOf(*owner);
-      frame.owner = owner;
     }
+    const InputFrame frame = inputFrame(stamp_ns, image);
     runAll([&](Deblurrer& deblurrer) { deblurrer.addFrame(frame, now_ns); });
   }
 

@@ -36,6 +36,22 @@ double byIrradiance(double dark, double bright, float irradiance) {
   return dark + (bright - dark) * std::min(1.0, static_cast<double>(irradiance));
 }
 
+cv::Size hotPixelExtent(HotPixelShape shape, int sensor_height) {
+  switch (shape) {
+    case HotPixelShape::kSingle:
+      return {1, 1};
+    case HotPixelShape::kPair:
+      return {2, 1};
+    case HotPixelShape::kBlock:
+      return {2, 2};
+    case HotPixelShape::kRow:
+      return {4, 1};
+    case HotPixelShape::kColumn:
+      return {1, sensor_height};
+  }
+  return {1, 1};
+}
+
 double seconds(double ns) {
   return ns / static_cast<double>(kNanosecondsPerSecond);
 }
@@ -63,12 +79,50 @@ EventSensor::EventSensor(const SensorSettings& settings, std::uint64_t seed)
   RandomEngine random = makeRandomEngine(seed, RandomStream::kThresholds);
   on_ = drawThresholds(settings.thresholds.on, settings.threshold_mismatch, pixels, random);
   off_ = drawThresholds(settings.thresholds.off, settings.threshold_mismatch, pixels, random);
-  leak_.resize(pixels);
-  RandomEngine hot_random = makeRandomEngine(seed, RandomStream::kHotPixels);
-  boost::random::bernoulli_distribution<double> is_hot(settings.hot_pixel_fraction);
+  drawHotPixels(seed);
+}
+
+void EventSensor::drawHotPixels(std::uint64_t seed) {
+  const std::size_t pixels = settings_.size.pixelCount();
+  const int width = settings_.size.width;
+  const cv::Size extent = hotPixelExtent(settings_.hot_pixel_shape, settings_.size.height);
+  RandomEngine random = makeRandomEngine(seed, RandomStream::kHotPixels);
+  boost::random::bernoulli_distribution<double> starts_one(settings_.hot_pixel_fraction /
+                                                           extent.area());
+  std::vector<bool> hot(pixels, false);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-    const double rate_hz = is_hot(hot_random) ? settings.hot_pixel_rate_hz : settings.leak_rate_hz;
+    if (!starts_one(random)) continue;
+    const cv::Rect sensor(0, 0, width, settings_.size.height);
+    // A column is drawn once for each of its pixels: any of them marks all of it.
+    const int y = static_cast<int>(pixel) / width;
+    const cv::Point corner(static_cast<int>(pixel) % width,
+                           settings_.hot_pixel_shape == HotPixelShape::kColumn ? 0 : y);
+    const cv::Rect place = cv::Rect(corner, extent) & sensor;
+    for (int row = place.y; row < place.br().y; ++row) {
+      for (int column = place.x; column < place.br().x; ++column) {
+        hot[static_cast<std::size_t>(row * width + column)] = true;
+      }
+    }
+  }
+  leak_.resize(pixels);
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+    const double rate_hz = hot[pixel] ? settings_.hot_pixel_rate_hz : settings_.leak_rate_hz;
     leak_[pixel] = static_cast<float>(rate_hz * on_[pixel]);
+  }
+}
+
+void EventSensor::respond(const cv::Mat1f& irradiance, cv::Mat1f& log) const {
+  cv::log(irradiance, log);
+  const double below_dn = settings_.linear_below_dn;
+  if (below_dn <= 0.0) return;
+  const auto below = static_cast<float>(below_dn / settings_.white_dn);
+  const double slope = settings_.white_dn * std::log(below_dn) / below_dn;
+  const double offset = std::log(settings_.white_dn);  // the log is that of irradiance, not of DN
+  for (int y = 0; y < log.rows; ++y) {
+    for (int x = 0; x < log.cols; ++x) {
+      const float light = irradiance(y, x);
+      if (light < below) log(y, x) = static_cast<float>(slope * light - offset);
+    }
   }
 }
 
@@ -78,7 +132,7 @@ void EventSensor::begin(std::int64_t t_ns, const cv::Mat1f& irradiance) {
     throw std::invalid_argument("EventSensor: irradiance is not of the sensor's size");
   }
   t_ns_ = t_ns;
-  cv::log(irradiance, log_);
+  respond(irradiance, log_);
   log_.copyTo(input_log_);
   next_log_.create(log_.size());
   free_ns_.assign(pixels, kNever);
@@ -109,7 +163,7 @@ void EventSensor::filterPhotoreceptor(const cv::Mat1f& irradiance, double dt_s) 
   // Exact for an input x that is linear over the step, with slope m and time constant T:
   // y(dt) = x(dt) - m T + (y(0) - x(0) + m T) exp(-dt / T).
   cv::Mat1f input;
-  cv::log(irradiance, input);
+  respond(irradiance, input);
   const std::size_t pixels = settings_.size.pixelCount();
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     const double cutoff_hz = byIrradiance(settings_.photoreceptor_dark_hz,
@@ -157,7 +211,8 @@ void EventSensor::fire(std::size_t pixel, const Step& step, double at_ns, bool o
   Event event;
   event.x = static_cast<std::uint16_t>(pixel % static_cast<std::size_t>(settings_.size.width));
   event.y = static_cast<std::uint16_t>(pixel / static_cast<std::size_t>(settings_.size.width));
-  event.t_ns = exact_ns - exact_ns % (settings_.clock_us * kNanosecondsPerMicrosecond);
+  const std::int64_t late_ns = exact_ns + settings_.delay_us * kNanosecondsPerMicrosecond;
+  event.t_ns = late_ns - late_ns % (settings_.clock_us * kNanosecondsPerMicrosecond);
   event.on = on;
   events.push_back(event);
   if (settings_.refractory_ns > 0) free_ns_[pixel] = exact_ns + settings_.refractory_ns;
@@ -200,7 +255,7 @@ void EventSensor::advance(std::int64_t t_ns, const cv::Mat1f& irradiance,
   if (settings_.photoreceptor_bright_hz > 0.0) {
     filterPhotoreceptor(irradiance, seconds(length_ns));
   } else {
-    cv::log(irradiance, next_log_);
+    respond(irradiance, next_log_);
   }
   drawNoise(irradiance, length_ns);
 

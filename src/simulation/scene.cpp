@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boost/random/uniform_real_distribution.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "fast_edi/simulation/texture.hpp"
@@ -16,6 +17,8 @@ constexpr int kSupersampling = 2;
 constexpr double kRed = 0.2126;
 constexpr double kGreen = 0.7152;
 constexpr double kBlue = 0.0722;
+/// Reflectance around which the contrast is scaled.
+constexpr double kMidGrey = 0.4;
 
 }  // namespace
 
@@ -37,6 +40,13 @@ Scene::Scene(const SceneSettings& settings, SensorSize view, ColorFilter filter,
   cv::resize(canvas, texels, size_px * kTexelsPerPixel, 0.0, 0.0, cv::INTER_AREA);
   cv::min(texels, cv::Scalar::all(kMaxReflectance), texels);
   cv::max(texels, cv::Scalar::all(kMinReflectance), texels);
+  if (settings.contrast != 1.0) {
+    // log r -> log m + contrast (log r - log m)
+    cv::pow(texels / kMidGrey, settings.contrast, texels);
+    texels *= kMidGrey;
+    cv::min(texels, cv::Scalar::all(kMaxReflectance), texels);
+  }
+  drawLamps(seed, texels);
   if (settings.optics_sigma_px > 0.0) {
     cv::GaussianBlur(texels, texels, cv::Size(), settings.optics_sigma_px * kTexelsPerPixel);
   }
@@ -47,6 +57,20 @@ Scene::Scene(const SceneSettings& settings, SensorSize view, ColorFilter filter,
   } else {
     cv::split(texels, planes_.data());
     photosites_ = {{{0, 1}, {1, 2}}};  // RGGB
+  }
+}
+
+void Scene::drawLamps(std::uint64_t seed, cv::Mat3f& texels) const {
+  RandomEngine random = makeRandomEngine(seed, RandomStream::kLamps);
+  boost::random::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (int lamp = 0; lamp < settings_.lamps; ++lamp) {
+    const double x = kMarginPx + view_.width * unit(random);
+    const double y = kMarginPx + view_.height * unit(random);
+    cv::circle(
+        texels,
+        cv::Point(static_cast<int>(x * kTexelsPerPixel), static_cast<int>(y * kTexelsPerPixel)),
+        static_cast<int>(std::lround(settings_.lamp_radius_px * kTexelsPerPixel)),
+        cv::Scalar::all(settings_.lamp_radiance / settings_.illumination), cv::FILLED);
   }
 }
 

@@ -14,21 +14,33 @@ constexpr double kFocalLengthPerWidth = 0.95;
 constexpr double kRoomFocalLengthPerWidth = 0.7;
 constexpr int kMinSide = 16;
 constexpr int kMaxSide = 4096;
+/// ln(D) / D, the slope of the linear part, is above 0 only for D > 1.
+constexpr double kLeastLinearBelowDn = 2.0;
 
 constexpr std::array<std::pair<const char*, SceneKind>, 2> kScenes{
     {{"plane", SceneKind::kPlane}, {"room", SceneKind::kRoom}}};
-constexpr std::array<std::pair<const char*, TextureKind>, 5> kTextures{
+constexpr std::array<std::pair<const char*, TextureKind>, 8> kTextures{
     {{"poster", TextureKind::kPoster},
      {"natural", TextureKind::kNatural},
      {"flat", TextureKind::kFlat},
      {"mosaic", TextureKind::kMosaic},
-     {"page", TextureKind::kPage}}};
+     {"page", TextureKind::kPage},
+     {"clouds", TextureKind::kClouds},
+     {"facade", TextureKind::kFacade},
+     {"weave", TextureKind::kWeave}}};
 constexpr std::array<std::pair<const char*, MotionKind>, 5> kMotions{
     {{"still", MotionKind::kStill},
      {"mild", MotionKind::kMild},
      {"pan", MotionKind::kPan},
      {"spin", MotionKind::kSpin},
      {"shake", MotionKind::kShake}}};
+
+constexpr std::array<std::pair<const char*, HotPixelShape>, 5> kHotPixelShapes{
+    {{"single", HotPixelShape::kSingle},
+     {"pair", HotPixelShape::kPair},
+     {"block", HotPixelShape::kBlock},
+     {"row", HotPixelShape::kRow},
+     {"column", HotPixelShape::kColumn}}};
 
 template <typename Names>
 auto fromName(const char* what, const std::string& name, const Names& names) {
@@ -83,6 +95,8 @@ SensorSettings SensorSettings::ideal() {
   settings.shot_noise_dark_hz = 0.0;
   settings.photoreceptor_bright_hz = 0.0;
   settings.photoreceptor_dark_hz = 0.0;
+  settings.linear_below_dn = 0.0;
+  settings.delay_us = 0;
   settings.hot_pixel_fraction = 0.0;
   settings.random_initial_level = false;
   settings.read_noise_dn = 0.0;
@@ -116,6 +130,11 @@ void SimulationSettings::validate() const {
     throw std::invalid_argument(
         "photoreceptor cut-off: expected bright and dark both 0 or both above 0 Hz");
   }
+  checkRange("linear below [DN]", sensor.linear_below_dn, 0.0, 250.0);
+  if (sensor.linear_below_dn > 0.0 && sensor.linear_below_dn < kLeastLinearBelowDn) {
+    throw std::invalid_argument("linear below [DN]: expected 0, or 2 to 250");
+  }
+  checkRange("event delay [us]", static_cast<double>(sensor.delay_us), 0.0, 20'000.0);
   checkRange("event clock [us]", static_cast<double>(sensor.clock_us), 1.0, 1000.0);
   checkRange("hot pixel fraction", sensor.hot_pixel_fraction, 0.0, 1.0);
   checkRange("hot pixel rate [Hz]", sensor.hot_pixel_rate_hz, 0.0, 1e5);
@@ -129,6 +148,10 @@ void SimulationSettings::validate() const {
   checkRange("tags", scene.tags, 0, 100);
   checkRange("tag side [px]", scene.tag_side_px, 4.0, 1000.0);
   checkRange("density", scene.density, 0.0, 1.0);
+  checkRange("contrast", scene.contrast, 0.0, 2.0);
+  checkRange("lamps", scene.lamps, 0, 20);
+  checkRange("lamp radiance", scene.lamp_radiance, 0.0, 1000.0);
+  checkRange("lamp radius [px]", scene.lamp_radius_px, 1.0, 100.0);
   checkRange("optics sigma [px]", scene.optics_sigma_px, 0.0, 20.0);
   checkRange("illumination", scene.illumination, 1e-4, 100.0);
   checkRange("flicker frequency [Hz]", scene.flicker_hz, 0.0, 1e4);
@@ -174,6 +197,10 @@ std::int64_t TimingSettings::exposureUs(int i) const {
 
 TextureKind textureKindFromName(const std::string& name) {
   return fromName("texture", name, kTextures);
+}
+
+HotPixelShape hotPixelShapeFromName(const std::string& name) {
+  return fromName("hot pixel shape", name, kHotPixelShapes);
 }
 
 MotionKind motionKindFromName(const std::string& name) {

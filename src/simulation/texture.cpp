@@ -334,6 +334,15 @@ cv::Mat3f drawTexture(TextureKind kind, cv::Size size_px, double scale, double d
     case TextureKind::kPage:
       drawPage(canvas, scale, random);
       break;
+    case TextureKind::kClouds:
+      drawClouds(canvas, scale, random);
+      break;
+    case TextureKind::kFacade:
+      drawFacade(canvas, scale, random);
+      break;
+    case TextureKind::kWeave:
+      drawWeave(canvas, scale, random);
+      break;
   }
   return canvas;
 }

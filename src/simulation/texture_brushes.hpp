@@ -29,4 +29,13 @@ void drawMosaic(cv::Mat3f& canvas, double scale, RandomEngine& random);
 /// A printed page: lines of letters, headings, ruled boxes. \param scale canvas elements per px
 void drawPage(cv::Mat3f& canvas, double scale, RandomEngine& random);
 
+/// 1/f noise of grey. \param scale canvas elements per px
+void drawClouds(cv::Mat3f& canvas, double scale, RandomEngine& random);
+
+/// A house front: stone courses, windows in rows. \param scale canvas elements per px
+void drawFacade(cv::Mat3f& canvas, double scale, RandomEngine& random);
+
+/// Coarse cloth of crossing threads. \param scale canvas elements per px
+void drawWeave(cv::Mat3f& canvas, double scale, RandomEngine& random);
+
 }  // namespace fast_edi

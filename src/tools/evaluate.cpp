@@ -23,7 +23,10 @@
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/evaluation/evaluation.hpp"
 #include "fast_edi/evaluation/report.hpp"
+#include "fast_edi/evaluation/sequence_sets.hpp"
 #include "fast_edi/evaluation/sequences.hpp"
+#include "fast_edi/evaluation/set_evaluation.hpp"
+#include "fast_edi/evaluation/set_report.hpp"
 #include "fast_edi/evaluation/video_quality.hpp"
 #include "fast_edi/ros/bag_deserialise.hpp"
 #include "fast_edi/ros/bag_error.hpp"
@@ -52,8 +55,10 @@ struct Arguments {
   fast_edi::ContrastSearchOptions search;
   std::vector<std::string> overrides;
   bool overwrite = false;
-  bool sequences = false;
-  int frames = fast_edi::kSequenceFrames;
+  std::string sequences;  ///< name of a set; empty: a recording
+  std::vector<std::string> variants;
+  std::string photographs = fast_edi::kPhotographFolder;
+  int frames = 0;  ///< 0: as many as the set has
   int seeds = fast_edi::kSequenceSeeds;
   double threshold_factor = 1.0;
   int video_images = 0;
@@ -81,8 +86,14 @@ po::options_description describeOptions(Arguments& arguments) {
       "SSEQ model: class.libsvm, regression_1..5.libsvm, feature_range.txt; without it no SSEQ");
   add("brisque-model", textOption(scorer.brisque_model_file, "FILE"), "BRISQUE model");
   add("brisque-range", textOption(scorer.brisque_range_file, "FILE"), "BRISQUE feature ranges");
-  add("full-reference-only", po::bool_switch(&scorer.full_reference_only),
-      "PSNR and SSIM alone: fast");
+  add("measures",
+      po::value<std::string>()->value_name("EXTENT")->notifier([&scorer](const std::string& name) {
+        scorer.extent = fast_edi::measureExtentFromName(name);
+      }),
+      "reference: PSNR and SSIM; tracks: also what a feature tracker keeps; front-end: also "
+      "feature "
+      "inliers; all (default; choosing and judging: tracks)");
+  add("full-reference-only", "the same as --measures reference: fast");
   add("skip",
       po::value(&scorer.first_frames_unscored)
           ->default_value(scorer.first_frames_unscored)
@@ -105,11 +116,16 @@ po::options_description describeOptions(Arguments& arguments) {
 
   po::options_description simulated("Simulated sequences");
   auto add_simulated = simulated.add_options();
-  add_simulated("sequences", po::bool_switch(&arguments.sequences),
-                "evaluate the fixed set of simulated sequences instead of a recording");
-  add_simulated("frames",
-                po::value(&arguments.frames)->default_value(arguments.frames)->value_name("N"),
-                "frames of each sequence");
+  add_simulated("sequences", po::value(&arguments.sequences)->value_name("SET"),
+                "instead of a recording: twelve (six scenes by two seeds), choosing (many sensors, "
+                "to choose parameters by) or judging (many sensors, never to choose by)");
+  add_simulated("variant", po::value(&arguments.variants)->value_name("'NAME P:=V ...'"),
+                "choosing and judging: a further method, by its name and parameters on top of the "
+                "others; may be repeated");
+  add_simulated("photographs", textOption(arguments.photographs, "FOLDER"),
+                "choosing and judging: where Debian's mate-backgrounds has its mate/nature");
+  add_simulated("frames", po::value(&arguments.frames)->value_name("N"),
+                "frames of each sequence (default: twelve 10, choosing and judging 6)");
   add_simulated("seeds",
                 po::value(&arguments.seeds)->default_value(arguments.seeds)->value_name("N"),
                 "seeds of each scene, from 1");
@@ -128,7 +144,7 @@ po::options_description describeOptions(Arguments& arguments) {
 tools::HelpText helpText() {
   return {
       "Usage: evaluate BAG [options] [parameter:=value ...]\n"
-      "       evaluate --sequences [options] [parameter:=value ...]\n\n"
+      "       evaluate --sequences SET [options] [parameter:=value ...]\n\n"
       "Compares the blurry input, plain EDI, counter EDI, EDI with the contrast found by\n"
       "sharpness, and the package's own output: table on standard output, report with\n"
       "pictures in a folder. Parameters given as name:=value come before the YAML file's.\n"
@@ -149,17 +165,29 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   }
   po::notify(*values);
   tools::sortWords(words, arguments.bag, arguments.overrides);
-  if (arguments.sequences != arguments.bag.empty()) {
+  const bool simulated = !arguments.sequences.empty();
+  if (simulated != arguments.bag.empty()) {
     throw po::error("expected either a BAG or --sequences");
   }
   if (arguments.scorer.first_frames_unscored < 0) {
     throw po::error("--skip: expected 0 or more frames");
   }
-  if (values->count("video") > 0 && !arguments.sequences) {
-    throw po::error("--video goes with --sequences, whose truth is known at any time");
+  if (values->count("video") > 0 && arguments.sequences != "twelve") {
+    throw po::error("--video goes with --sequences twelve, whose truth is known at any time");
+  }
+  if (values->count("frames") > 0 && arguments.frames < 1) {
+    throw po::error("--frames: expected at least one frame");
+  }
+  if (!arguments.variants.empty() && (!simulated || arguments.sequences == "twelve")) {
+    throw po::error("--variant goes with --sequences choosing and judging");
   }
   if (!(arguments.threshold_factor > 0.0)) {
     throw po::error("--threshold-factor: expected a number above 0");
+  }
+  if (values->count("full-reference-only") > 0) {
+    arguments.scorer.extent = fast_edi::MeasureExtent::kReference;
+  } else if (simulated && arguments.sequences != "twelve" && values->count("measures") == 0) {
+    arguments.scorer.extent = fast_edi::MeasureExtent::kTracks;
   }
   arguments.command = "rosrun fast_edi evaluate";
   for (int i = 1; i < argc; ++i) {
@@ -168,7 +196,9 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   return true;
 }
 
-fast_edi::LoadedParameters loadParameters(const Arguments& arguments) {
+/// \param more overrides that come before all others
+fast_edi::LoadedParameters loadParameters(const Arguments& arguments,
+                                          const std::vector<std::string>& more = {}) {
   YAML::Node root(YAML::NodeType::Map);
   if (!arguments.config.empty()) {
     try {
@@ -178,7 +208,8 @@ fast_edi::LoadedParameters loadParameters(const Arguments& arguments) {
     }
   }
   fast_edi::applyOverrides(root, arguments.overrides);
-  if (arguments.sequences) {
+  fast_edi::applyOverrides(root, more);
+  if (!arguments.sequences.empty()) {
     // The simulated sensor's own thresholds replace these, see evaluateSequence().
     const fast_edi::SensorSettings sensor;
     if (!root["contrast_threshold_on"]) {
@@ -353,25 +384,28 @@ int evaluateBag(const Arguments& arguments, const fast_edi::DeblurParameters& pa
   return reader.damage().empty() && malformed == 0 ? kDone : kInputIncomplete;
 }
 
+int framesOfTwelve(const Arguments& arguments) {
+  return arguments.frames > 0 ? arguments.frames : fast_edi::kSequenceFrames;
+}
+
 int evaluateSequences(const Arguments& arguments, const fast_edi::DeblurParameters& parameters) {
+  const int frames = framesOfTwelve(arguments);
   const std::vector<fast_edi::EvaluationSequence> sequences =
-      fast_edi::evaluationSequences(arguments.frames, arguments.seeds);
+      fast_edi::evaluationSequences(frames, arguments.seeds);
   const fast_edi::FrameScorer scorer(arguments.scorer);
   std::list<fast_edi::Evaluation> evaluations;
   std::vector<fast_edi::EvaluationGroup> groups = {{"sequences for tuning", {}},
                                                    {"sequences not tuned on", {}}};
   {
     fast_edi::ProgressBar bar("evaluating");
-    const std::uint64_t total = sequences.size() * static_cast<std::uint64_t>(arguments.frames);
+    const std::uint64_t total = sequences.size() * static_cast<std::uint64_t>(frames);
     std::uint64_t done_before = 0;
     for (const fast_edi::EvaluationSequence& sequence : sequences) {
       evaluations.push_back(fast_edi::evaluateSequence(
           sequence, parameters, arguments.threshold_factor, arguments.search, scorer,
-          [&](int frames) {
-            bar.update(done_before + static_cast<std::uint64_t>(frames), total);
-          }));
+          [&](int done) { bar.update(done_before + static_cast<std::uint64_t>(done), total); }));
       groups[sequence.for_tuning ? 0 : 1].members.push_back(&evaluations.back());
-      done_before += static_cast<std::uint64_t>(arguments.frames);
+      done_before += static_cast<std::uint64_t>(frames);
     }
   }
   std::vector<std::string> notes = notesOf(scorer);
@@ -394,20 +428,91 @@ int evaluateSequences(const Arguments& arguments, const fast_edi::DeblurParamete
   return kDone;
 }
 
+/// A variant from its words on the command line: "name key:=value key:=value".
+fast_edi::Variant variantFrom(const Arguments& arguments, const std::string& text) {
+  std::istringstream stream(text);
+  fast_edi::Variant variant;
+  stream >> variant.name;
+  if (variant.name.empty() || variant.name.find(":=") != std::string::npos) {
+    throw po::error("--variant: expected a name and then parameters, got \"" + text + "\"");
+  }
+  std::vector<std::string> overrides;
+  for (std::string word; stream >> word;) {
+    overrides.push_back(word);
+  }
+  variant.parameters = loadParameters(arguments, overrides).deblur;
+  return variant;
+}
+
+int evaluateSet(const Arguments& arguments, fast_edi::SequenceSet set,
+                const fast_edi::DeblurParameters& parameters) {
+  const std::string scores = arguments.output + "/" + arguments.sequences + ".csv";
+  if (!arguments.overwrite && std::filesystem::exists(scores)) {
+    throw std::runtime_error("cannot write " + scores +
+                             ": it exists already (--force replaces it)");
+  }
+  std::vector<fast_edi::Variant> variants = {{"ours", parameters}};
+  for (const std::string& text : arguments.variants) {
+    variants.push_back(variantFrom(arguments, text));
+  }
+  const int frames = arguments.frames > 0 ? arguments.frames : fast_edi::kSetFrames;
+  const fast_edi::SequenceSetContents contents =
+      fast_edi::sequencesOf(set, frames, arguments.photographs);
+  const fast_edi::FrameScorer scorer(arguments.scorer);
+  fast_edi::SetEvaluation evaluation;
+  evaluation.columns = fast_edi::columnNames(variants);
+  {
+    fast_edi::ProgressBar bar("evaluating");
+    const std::uint64_t total = contents.sequences.size() * static_cast<std::uint64_t>(frames);
+    for (fast_edi::SetSequence sequence : contents.sequences) {
+      const std::uint64_t done_before =
+          evaluation.results.size() * static_cast<std::uint64_t>(frames);
+      sequence.threshold_factor *= arguments.threshold_factor;
+      evaluation.results.push_back(fast_edi::evaluateVariants(
+          sequence, variants, scorer,
+          [&](int done) { bar.update(done_before + static_cast<std::uint64_t>(done), total); }));
+    }
+  }
+  for (const fast_edi::Measure measure : {fast_edi::Measure::kPsnr, fast_edi::Measure::kSsim}) {
+    fast_edi::printSetMembers(std::cout, evaluation, measure);
+    std::cout << "\n";
+  }
+  fast_edi::printSetFactors(std::cout, evaluation);
+  if (arguments.scorer.extent >= fast_edi::MeasureExtent::kTracks) {
+    fast_edi::printSetShares(std::cout, evaluation);
+  }
+  fast_edi::printSetMeasures(std::cout, evaluation);
+  std::cout << "\n";
+  fast_edi::printSetRuntimes(std::cout, evaluation);
+  for (const std::string& missing : contents.missing) {
+    std::cout << "Left out: " << missing << "\n";
+  }
+  for (const fast_edi::SetResult& result : evaluation.results) {
+    if (result.left_out > 0) {
+      std::cout << result.name << ": " << result.left_out << " frames passed through\n";
+    }
+  }
+  for (const std::string& note : notesOf(scorer)) {
+    std::cout << note << "\n";
+  }
+  std::filesystem::create_directories(arguments.output);
+  fast_edi::writeSetScores(scores, evaluation);
+  std::cout << "written: " << scores << "\n";
+  return kDone;
+}
+
 int evaluateVideo(const Arguments& arguments, const fast_edi::DeblurParameters& parameters) {
   std::vector<fast_edi::VideoQuality> qualities;
-  const auto sequences = fast_edi::evaluationSequences(arguments.frames, arguments.seeds);
-  const std::uint64_t total = sequences.size() * static_cast<std::uint64_t>(arguments.frames);
+  const int frames = framesOfTwelve(arguments);
+  const auto sequences = fast_edi::evaluationSequences(frames, arguments.seeds);
+  const std::uint64_t total = sequences.size() * static_cast<std::uint64_t>(frames);
   {
     fast_edi::ProgressBar bar("evaluating");
     for (const fast_edi::EvaluationSequence& sequence : sequences) {
-      const std::uint64_t done_before =
-          qualities.size() * static_cast<std::uint64_t>(arguments.frames);
+      const std::uint64_t done_before = qualities.size() * static_cast<std::uint64_t>(frames);
       qualities.push_back(fast_edi::videoQuality(
           sequence, parameters, arguments.video_images, arguments.scorer.first_frames_unscored,
-          [&](int frames) {
-            bar.update(done_before + static_cast<std::uint64_t>(frames), total);
-          }));
+          [&](int done) { bar.update(done_before + static_cast<std::uint64_t>(done), total); }));
     }
   }
   fast_edi::printVideoTable(std::cout, qualities);
@@ -423,8 +528,12 @@ int run(const Arguments& arguments) {
     return evaluateVideo(arguments, parameters.deblur);
   }
   fast_edi::prepareReportFolder(arguments.output, arguments.overwrite);
-  return arguments.sequences ? evaluateSequences(arguments, parameters.deblur)
-                             : evaluateBag(arguments, parameters.deblur);
+  if (arguments.sequences.empty()) {
+    return evaluateBag(arguments, parameters.deblur);
+  }
+  const fast_edi::SequenceSet set = fast_edi::sequenceSetFromName(arguments.sequences);
+  return set == fast_edi::SequenceSet::kTwelve ? evaluateSequences(arguments, parameters.deblur)
+                                               : evaluateSet(arguments, set, parameters.deblur);
 }
 
 }  // namespace

@@ -31,6 +31,7 @@
 #include "fast_edi/ros/event_array.hpp"
 #include "fast_edi/simulation/davis_simulator.hpp"
 #include "fast_edi/simulation/recording_faults.hpp"
+#include "fast_edi/simulation/sensor_models.hpp"
 
 namespace {
 
@@ -297,25 +298,20 @@ class Recording {
   std::multimap<std::int64_t, std::function<void()>> waiting_;  ///< by record time
 };
 
-/// Nothing, what is usual, and what a warm or slowly biased sensor does.
-void applyNoisePreset(const std::string& name, SensorSettings& sensor) {
-  const auto size = sensor.size;
-  if (name == "none") {
-    sensor = SensorSettings::ideal();
-  } else if (name == "strong") {
-    sensor.threshold_mismatch = 0.10;
-    sensor.refractory_ns = 96'000;  // RefrBp (3, 7)
-    sensor.leak_rate_hz = 0.3;
-    sensor.shot_noise_bright_hz = 1.0;
-    sensor.shot_noise_dark_hz = 10.0;
-    sensor.photoreceptor_bright_hz = 300.0;
-    sensor.photoreceptor_dark_hz = 30.0;
-    sensor.hot_pixel_fraction = 1e-4;
-    sensor.read_noise_dn = 2.0;
-  } else if (name != "typical") {
-    throw std::invalid_argument("--noise: expected none, typical or strong, got \"" + name + "\"");
+SensorSettings sensorFromModel(const std::string& name) {
+  try {
+    return fast_edi::sensorModel(name);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("--noise: ") + error.what());
   }
-  sensor.size = size;
+}
+
+std::string namesOfSensorModels() {
+  std::string names;
+  for (const std::string& name : fast_edi::sensorModelNames()) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return names;
 }
 
 /// Dim light makes up for a long exposure. Whole settings, in the place of the plane's defaults.
@@ -423,6 +419,7 @@ int run(int argc, char** argv) {
   std::string sensor = "davis346";
   std::string noise = "typical";
   std::string texture = "poster";
+  std::string hot_shape = "single";
   std::string motion = "shake";
   std::string stamp = "mid";
   double duration_s = 0.0;
@@ -450,8 +447,15 @@ int run(int argc, char** argv) {
             "--white-dn 717 --frames 1200 --period-us 50000 --exposure-us 40000 --lead-us 100000");
   addOption(scene, "seed", settings.seed, "equal seeds give equal bags");
   addOption(scene, "texture", texture,
-            "poster, natural, flat, mosaic, page, or a picture: anything with a '.' or '/' in it "
-            "is a path");
+            "poster, natural, flat, mosaic, page, clouds, facade, weave, or a picture: anything "
+            "with a '.' or '/' in it is a path");
+  addOption(scene, "contrast", settings.scene.contrast,
+            "of the texture, in the log around mid grey, 0..2");
+  addOption(scene, "lamps", settings.scene.lamps,
+            "bright discs in view, 0..20; with --flicker-hz they flicker as all light does");
+  addOption(scene, "lamp-radiance", settings.scene.lamp_radiance,
+            "of a lamp, in units of a white surface at illumination 1; above 1.2 it saturates");
+  addOption(scene, "lamp-radius-px", settings.scene.lamp_radius_px, "of a lamp [px]");
   addOption(scene, "density", settings.scene.density, "how full the poster is, 0..1");
   addOption(scene, "tags", settings.scene.tags, "number of AprilTags (36h11)");
   addOption(scene, "tag-side-px", settings.scene.tag_side_px, "side of a tag's black square [px]");
@@ -503,8 +507,8 @@ int run(int argc, char** argv) {
   addOption(pixels, "width", settings.sensor.size.width, "other width [px]");
   addOption(pixels, "height", settings.sensor.size.height, "other height [px]");
   addOption(pixels, "noise", noise,
-            "none, typical or strong: presets that the options below change; their defaults are "
-            "those of typical");
+            "model of the sensor, one of " + namesOfSensorModels() +
+                "; the options below change it, their defaults are those of typical");
   addOption(pixels, "threshold-on", settings.sensor.thresholds.on, "mean [natural log]");
   addOption(pixels, "threshold-off", settings.sensor.thresholds.off, "mean [natural log], > 0");
   addOption(pixels, "mismatch", settings.sensor.threshold_mismatch,
@@ -521,8 +525,14 @@ int run(int argc, char** argv) {
             "cut-off at a white surface [Hz], 0 = unlimited");
   addOption(pixels, "photoreceptor-dark-hz", settings.sensor.photoreceptor_dark_hz,
             "cut-off at a black surface [Hz], 0 = unlimited");
+  addOption(pixels, "linear-below-dn", settings.sensor.linear_below_dn,
+            "the pixel's log becomes linear below this, as in v2e (20 there), 0 or 2..250 [DN]");
+  addOption(pixels, "delay-us", settings.sensor.delay_us,
+            "event times are late by this, 0..20000 [us]");
   addOption(pixels, "hot-pixels", settings.sensor.hot_pixel_fraction,
             "pixels that fire all the time, fraction");
+  addOption(pixels, "hot-pixel-shape", hot_shape,
+            "how they lie together: single, pair, block (2x2), row (1x4) or column");
   addOption(pixels, "hot-pixel-hz", settings.sensor.hot_pixel_rate_hz, "at this rate [1/s]");
   addOption(pixels, "white-dn", settings.sensor.white_dn, "frames: white surface [DN]");
   addOption(pixels, "read-noise-dn", settings.sensor.read_noise_dn, "frames: read noise [DN rms]");
@@ -552,7 +562,7 @@ int run(int argc, char** argv) {
   // Presets first, so that single options can change them.
   if (values.count("noise") != 0) noise = values["noise"].as<std::string>();
   if (values.count("sensor") != 0) sensor = values["sensor"].as<std::string>();
-  applyNoisePreset(noise, settings.sensor);
+  settings.sensor = sensorFromModel(noise);
   applySensorName(sensor, settings.sensor);
   if (values.count("scene") != 0) scene_name = values["scene"].as<std::string>();
   if (fast_edi::sceneKindFromName(scene_name) == fast_edi::SceneKind::kRoom) {
@@ -587,6 +597,7 @@ int run(int argc, char** argv) {
   } else {
     settings.scene.texture = fast_edi::textureKindFromName(texture);
   }
+  settings.sensor.hot_pixel_shape = fast_edi::hotPixelShapeFromName(hot_shape);
   settings.motion.kind = fast_edi::motionKindFromName(motion);
   if (options.array_length_us <= 0) {
     throw std::invalid_argument("--array-us: expected more than 0, got " +

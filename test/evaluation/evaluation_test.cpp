@@ -9,7 +9,7 @@ namespace {
 
 ScorerOptions skipping(int frames) {
   ScorerOptions options;
-  options.full_reference_only = true;
+  options.extent = MeasureExtent::kReference;
   options.first_frames_unscored = frames;
   return options;
 }

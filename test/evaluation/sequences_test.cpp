@@ -9,7 +9,7 @@ namespace {
 
 ScorerOptions fullReferenceOnly() {
   ScorerOptions options;
-  options.full_reference_only = true;
+  options.extent = MeasureExtent::kReference;
   return options;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -191,6 +193,100 @@ TEST(EventSensorTest, HotPixelsFireAtTheirRate) {
   EXPECT_GT(counts.size(), 9U);
   EXPECT_LT(counts.size(), 39U);
   for (const auto& entry : counts) EXPECT_NEAR(entry.second, 100, 1);
+}
+
+/// Pixels that fired in 50 ms of a still scene with some hot pixels in a given shape.
+std::set<std::pair<int, int>> hotPixels(HotPixelShape shape, double fraction) {
+  SensorSettings settings = idealSettings();
+  settings.hot_pixel_fraction = fraction;
+  settings.hot_pixel_rate_hz = 2000.0;
+  settings.hot_pixel_shape = shape;
+  EventSensor sensor(settings, 2);
+  std::set<std::pair<int, int>> hot;
+  for (const Event& event : still(sensor, -1.0, 5)) hot.insert({event.x, event.y});
+  return hot;
+}
+
+TEST(EventSensorTest, HotPixelsLieTogetherAsTheirShapeSays) {
+  constexpr double kFraction = 0.02;
+  const auto beside = [](const std::set<std::pair<int, int>>& hot, const std::pair<int, int>& pixel,
+                         int dx, int dy) {
+    return hot.count({pixel.first + dx, pixel.second + dy}) > 0;
+  };
+  const auto pairs = hotPixels(HotPixelShape::kPair, kFraction);
+  const auto blocks = hotPixels(HotPixelShape::kBlock, kFraction);
+  const auto rows = hotPixels(HotPixelShape::kRow, kFraction);
+  for (const auto* hot : {&pairs, &blocks, &rows}) {
+    EXPECT_GE(hot->size(), 4U);
+    EXPECT_LE(hot->size(), 60U);  // 24 in the mean
+  }
+  // A shape is cut only by the right and lower border of the sensor.
+  const auto inside = [](const std::pair<int, int>& pixel) {
+    return pixel.first < kSize.width - 1 && pixel.second < kSize.height - 1;
+  };
+  for (const auto& pixel : pairs) {
+    EXPECT_TRUE(!inside(pixel) || beside(pairs, pixel, 1, 0) || beside(pairs, pixel, -1, 0));
+  }
+  for (const auto& pixel : blocks) {
+    EXPECT_TRUE(!inside(pixel) || beside(blocks, pixel, 1, 0) || beside(blocks, pixel, -1, 0));
+    EXPECT_TRUE(!inside(pixel) || beside(blocks, pixel, 0, 1) || beside(blocks, pixel, 0, -1));
+  }
+  for (const auto& pixel : rows) {
+    int length = 1;
+    for (int dx = 1; beside(rows, pixel, dx, 0); ++dx) ++length;
+    for (int dx = -1; beside(rows, pixel, dx, 0); --dx) ++length;
+    EXPECT_TRUE(length >= 4 || pixel.first >= kSize.width - 3);
+  }
+}
+
+TEST(EventSensorTest, AHotColumnIsHotFromTopToBottom) {
+  const auto hot = hotPixels(HotPixelShape::kColumn, 3.0 / kSize.width);
+  std::map<int, int> by_column;
+  for (const auto& pixel : hot) ++by_column[pixel.first];
+  EXPECT_GE(by_column.size(), 1U);
+  EXPECT_LE(by_column.size(), 10U);
+  for (const auto& [column, count] : by_column) {
+    EXPECT_EQ(count, kSize.height) << "column " << column;
+  }
+}
+
+TEST(EventSensorTest, DelayMakesTheSameEventsLate) {
+  const auto rising = [](std::int64_t delay_us) {
+    SensorSettings settings = idealSettings();
+    settings.delay_us = delay_us;
+    EventSensor sensor(settings, 1);
+    std::vector<Event> events;
+    sensor.begin(kStart, uniformIrradiance(-1.0));
+    sensor.advance(kStart + 10 * kNanosecondsPerMillisecond, uniformIrradiance(0.0), events);
+    return events;
+  };
+  const std::vector<Event> prompt = rising(0);
+  const std::vector<Event> late = rising(5000);
+  ASSERT_EQ(late.size(), prompt.size());
+  for (std::size_t i = 0; i < late.size(); ++i) {
+    ASSERT_EQ(late[i].t_ns - prompt[i].t_ns, 5 * kNanosecondsPerMillisecond);
+    ASSERT_EQ(late[i].x, prompt[i].x);
+  }
+}
+
+TEST(EventSensorTest, BelowItsLimitTheResponseIsLinear) {
+  SensorSettings settings = idealSettings();
+  settings.white_dn = 200.0;
+  settings.linear_below_dn = 20.0;
+  settings.thresholds = {0.1, 0.1};
+  const auto count = [&](double from_dn, double to_dn) {
+    EventSensor sensor(settings, 1);
+    std::vector<Event> events;
+    sensor.begin(kStart, uniformIrradiance(std::log(from_dn / settings.white_dn)));
+    sensor.advance(kStart + 10 * kNanosecondsPerMillisecond,
+                   uniformIrradiance(std::log(to_dn / settings.white_dn)), events);
+    return ofPixel(events, 3, 3).size();
+  };
+  // ln(20) / 20 = 0.1498 for a DN: from 4 to 10 DN 0.899, where the log has 0.916.
+  EXPECT_EQ(count(4.0, 10.0), 8U);
+  // From 10 to 40 DN 10 x 0.1498 and ln(2): 2.191, where the log has 1.386.
+  EXPECT_EQ(count(10.0, 40.0), 21U);
+  EXPECT_EQ(count(40.0, 160.0), 13U);
 }
 
 TEST(EventSensorTest, ShotNoiseRateFollowsIrradiance) {

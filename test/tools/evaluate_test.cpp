@@ -99,7 +99,8 @@ TEST_F(EvaluateTest, ACutRecordingIsEvaluatedAsFarAsItGoes) {
 }
 
 TEST_F(EvaluateTest, SequencesAreReportedByHalves) {
-  const CommandResult result = evaluate("--sequences --frames 1 --seeds 1 --full-reference-only");
+  const CommandResult result =
+      evaluate("--sequences twelve --frames 1 --seeds 1 --full-reference-only");
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_THAT(result.output, HasSubstr("sequences for tuning"));
   EXPECT_THAT(result.output, HasSubstr("sequences not tuned on"));
@@ -107,10 +108,22 @@ TEST_F(EvaluateTest, SequencesAreReportedByHalves) {
 }
 
 TEST_F(EvaluateTest, ShowsTheVideoOverTheExposure) {
-  const CommandResult result = evaluate("--sequences --frames 1 --seeds 1 --video 3");
+  const CommandResult result = evaluate("--sequences twelve --frames 1 --seeds 1 --video 3");
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_THAT(result.output, HasSubstr("| PSNR [dB] at | 0.17 | 0.50 | 0.83 | loss | largest |"));
   EXPECT_THAT(result.output, HasSubstr("| page-spin/1 |"));
+}
+
+TEST_F(EvaluateTest, SetsKnowTheirOptions) {
+  const auto fails = [this](const std::string& arguments, const std::string& message) {
+    const CommandResult result = evaluate(arguments);
+    EXPECT_EQ(result.exit_code, 1) << arguments;
+    EXPECT_THAT(result.output, HasSubstr(message));
+  };
+  fails("--sequences thirteen", "expected twelve, choosing or judging");
+  fails("--sequences twelve --variant 'wide filter_gain_range:=1.0'", "--variant goes with");
+  fails("--sequences choosing --variant filter_gain_range:=1.0", "expected a name");
+  fails("--sequences choosing --measures some", "expected one of reference, tracks");
 }
 
 TEST_F(EvaluateTest, NamesWhatIsWrong) {
@@ -123,11 +136,11 @@ TEST_F(EvaluateTest, NamesWhatIsWrong) {
   fails("a.bag b.bag" + kThresholds, "one recording at a time");
   fails("/nonexistent.bag" + kThresholds, "/nonexistent.bag");
   fails("/nonexistent.bag", "contrast_threshold_on");
-  fails("--sequences --frames 0", "at least one frame");
-  fails("--sequences --video 4", "expected an odd number");
-  fails("a.bag --video 5" + kThresholds, "--video goes with --sequences");
-  fails("--sequences --threshold-factor 0", "--threshold-factor");
-  fails("--sequences --sseq-model /nonexistent", "/nonexistent/feature_range.txt");
+  fails("--sequences twelve --frames 0", "at least one frame");
+  fails("--sequences twelve --video 4", "expected an odd number");
+  fails("a.bag --video 5" + kThresholds, "--video goes with --sequences twelve");
+  fails("--sequences twelve --threshold-factor 0", "--threshold-factor");
+  fails("--sequences twelve --sseq-model /nonexistent", "/nonexistent/feature_range.txt");
   const std::string bag = simulate();
   fails(bag + kThresholds + " --image /none", "/none");
 }

@@ -242,7 +242,7 @@ TEST_F(SimulateDavisTool, RefusesWhatItCannotDo) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"--encoding yuv422", "--encoding: expected mono8, mono16"},
       {"--stamp noon", "--stamp: expected start, mid or end, got \"noon\""},
-      {"--noise loud", "--noise: expected none, typical or strong"},
+      {"--noise loud", "--noise: sensor model: expected one of none, clean"},
       {"--texture velvet",
        "texture: expected one of poster, natural, flat, mosaic, page, got \"velvet\""},
       {"--threshold-on 0", "ON threshold [natural log]: expected 0.01 to 10, got 0"},

@@ -12,6 +12,7 @@
 
 #include "fast_edi/evaluation/brisque.hpp"
 #include "fast_edi/evaluation/feature_matches.hpp"
+#include "fast_edi/evaluation/feature_tracks.hpp"
 #include "fast_edi/evaluation/sseq.hpp"
 #include "fast_edi/tags/tag_detector.hpp"
 
@@ -32,8 +33,19 @@ enum class Measure {
   kMserOrb,
   kBrisk,
   kOrb,
+  kTrueNextSurf,  ///< from here on: inliers between the frame before and this *true* frame, which
+                  ///< noise in both pictures cannot raise
+  kTrueNextFastBrisk,
+  kTrueNextMserSurf,
+  kTrueNextMserOrb,
+  kTrueNextBrisk,
+  kTrueNextOrb,
+  kTracksClose,  ///< TrackFigures::tracks, features 10 px apart
+  kTracksWide,   ///< the same, 20 px apart
+  kTrackAge,     ///< TrackFigures::mean_age, 10 px apart [frames]
+  kMovedShare,   ///< TrackFigures::moved_share, 10 px apart
 };
-constexpr std::size_t kMeasureCount = 13;
+constexpr std::size_t kMeasureCount = 23;
 constexpr std::size_t indexOf(Measure measure) {
   return static_cast<std::size_t>(measure);
 }
@@ -47,26 +59,54 @@ struct MeasureInfo {
 };
 const MeasureInfo& describe(Measure measure);
 
+/// Distance of tracked features [px].
+constexpr double kCloseTracksPx = 10.0;
+constexpr double kWideTracksPx = 20.0;
+
 /// No value: no truth, no frame before, or not to be had on this machine.
 using Scores = std::array<std::optional<double>, kMeasureCount>;
+
+/// How much is measured; each includes those before it.
+enum class MeasureExtent {
+  kReference,  ///< PSNR and SSIM alone: fast
+  kTracks,     ///< what a tracker keeps
+  kFrontEnd,   ///< feature inliers
+  kAll,
+};
+
+/// \throws std::invalid_argument listing the names that are known: reference, tracks, front-end,
+/// all
+MeasureExtent measureExtentFromName(const std::string& name);
 
 struct ScorerOptions {
   std::string brisque_model_file = kBrisqueModelFile;
   std::string brisque_range_file = kBrisqueRangeFile;
-  std::string sseq_folder;           ///< empty: no SSEQ
-  bool full_reference_only = false;  ///< PSNR and SSIM alone: fast, for tuning
-  int first_frames_unscored = 0;     ///< of each recording: time to learn from it
+  std::string sseq_folder;  ///< empty: no SSEQ
+  MeasureExtent extent = MeasureExtent::kAll;
+  int first_frames_unscored = 0;  ///< of each recording: time to learn from it
 };
 
-/// Features of the frame before, one memory for each method. clear() where a frame is missing.
+/// Of one image, by kAllFeatureMethods.
+using FrameFeatures = std::array<ImageFeatures, kAllFeatureMethods.size()>;
+
+/// The true frame, and what is needed of it for each method.
+struct TrueFrame {
+  cv::Mat image;           ///< CV_8UC1, or empty: not known
+  FrameFeatures features;  ///< without MeasureExtent::kFrontEnd none
+};
+
+/// Features and tracks of the frames before, one memory for each method. clear() where a frame is
+/// missing.
 class FeatureMemory {
  public:
-  void clear() { known_ = false; }
+  void clear();
 
  private:
   friend class FrameScorer;
   bool known_ = false;
-  std::array<ImageFeatures, kAllFeatureMethods.size()> features_;
+  FrameFeatures features_;
+  FeatureTracker close_{{TrackerSettings().max_features, kCloseTracksPx}};
+  FeatureTracker wide_{{TrackerSettings().max_features, kWideTracksPx}};
 };
 
 class FrameScorer {
@@ -79,12 +119,19 @@ class FrameScorer {
 
   const ScorerOptions& options() const { return options_; }
 
+  /// \param image CV_8UC1, or empty
+  TrueFrame trueFrame(const cv::Mat& image) const;
+
   /// \param image CV_8UC1
-  /// \param truth CV_8UC1 of the same size, or empty
-  Scores score(const cv::Mat& image, const cv::Mat& truth, FeatureMemory& memory) const;
+  /// \param truth of the same size, or empty
+  Scores score(const cv::Mat& image, const TrueFrame& truth, FeatureMemory& memory) const;
 
  private:
-  void scoreWithoutReference(const cv::Mat& image, FeatureMemory& memory, Scores& scores) const;
+  bool measures(MeasureExtent extent) const { return options_.extent >= extent; }
+  FrameFeatures featuresOf(const cv::Mat& image) const;
+  void scoreAppearance(const cv::Mat& image, Scores& scores) const;
+  void scoreFeatures(const cv::Mat& image, const TrueFrame& truth, FeatureMemory& memory,
+                     Scores& scores) const;
 
   ScorerOptions options_;
   std::vector<std::string> missing_;

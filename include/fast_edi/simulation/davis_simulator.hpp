@@ -38,7 +38,9 @@ struct SimulatedFrame {
 struct SimulatedInterval {
   std::int64_t start_ns = 0;
   std::int64_t end_ns = 0;
-  std::vector<Event> events;   ///< with start < t <= end before rounding down to the clock, sorted
+  /// Sorted, with start < t <= end before rounding down to the clock, both later by the sensor's
+  /// delay.
+  std::vector<Event> events;
   std::vector<ImuSample> imu;  ///< with start <= t <= end, none twice; in the room alone
   SimulatedFrame frame;
 };

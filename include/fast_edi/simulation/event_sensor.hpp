@@ -15,7 +15,7 @@ namespace fast_edi {
 
 /// Turns irradiance given at successive instants into events. Between two instants log irradiance
 /// is taken as linear, so that crossing times are exact for that signal; they are then rounded down
-/// to the sensor's clock (1 us unless set otherwise).
+/// to the sensor's clock (1 us unless set otherwise), and late by SensorSettings::delay_us.
 ///
 /// Invariant (no noise, leak, refractory period or low-pass): at each instant given, log irradiance
 /// minus the pixel's initial level minus the sum of its events' thresholds lies within
@@ -28,8 +28,8 @@ class EventSensor {
   /// \param irradiance CV_32FC1 of the sensor's size, > 0
   void begin(std::int64_t t_ns, const cv::Mat1f& irradiance);
 
-  /// Appends the events of (last instant, t_ns], sorted by time, equal times in row-major order.
-  /// \pre begin() was called; t_ns is later than the last instant
+  /// Appends the events of (last instant, t_ns], both later by the delay, sorted by time, equal
+  /// times in row-major order. \pre begin() was called; t_ns is later than the last instant
   void advance(std::int64_t t_ns, const cv::Mat1f& irradiance, std::vector<Event>& events);
 
   /// Longest step that resolves the photoreceptor's low-pass [ns].
@@ -47,6 +47,9 @@ class EventSensor {
   };
   struct Step;
 
+  void drawHotPixels(std::uint64_t seed);
+  /// The pixel's response to irradiance, a log (see SensorSettings::linear_below_dn).
+  void respond(const cv::Mat1f& irradiance, cv::Mat1f& log) const;
   void filterPhotoreceptor(const cv::Mat1f& irradiance, double dt_s);
   void drawNoise(const cv::Mat1f& irradiance, double length_ns);
   void advancePixel(std::size_t pixel, const Step& step, double from_ns, double to_ns,

@@ -24,6 +24,7 @@ enum class RandomStream : std::uint32_t {
   kRoom,
   kRoomMotion,
   kImu,
+  kLamps,
 };
 
 /// An engine for one purpose; equal arguments give equal sequences.

@@ -38,6 +38,8 @@ class Scene {
   const std::vector<PlacedTag>& tags() const { return tags_; }
 
  private:
+  void drawLamps(std::uint64_t seed, cv::Mat3f& texels) const;
+
   SceneSettings settings_;
   SensorSize view_;
   std::vector<PlacedTag> tags_;

@@ -20,6 +20,9 @@ enum class TextureKind {
   kFlat,     ///< almost nothing to see: slow shading of a few percent
   kMosaic,   ///< stones of random grey with thin dark joints: corners and fine lines everywhere
   kPage,     ///< a printed page: dark letters on bright paper, ruled boxes
+  kClouds,   ///< 1/f noise: no edge, contrast at every scale
+  kFacade,   ///< a house front: courses of stone, rows of windows with bars, reflections, shadows
+  kWeave,    ///< coarse cloth: crossing threads with irregular shading, a few printed stripes
 };
 
 /// Camera motions over the plane, all smooth and bounded.
@@ -34,10 +37,15 @@ enum class MotionKind {
 /// What the camera looks at: a plane seen at one sensor pixel per plane pixel in the nominal pose.
 struct SceneSettings {
   TextureKind texture = TextureKind::kPoster;
-  std::string texture_file;      ///< a picture (any format OpenCV reads) instead of `texture`
-  int tags = 0;                  ///< AprilTags (36h11, ids 0, 1, ...) spread over the nominal view
-  double tag_side_px = 32.0;     ///< side of a tag's black square in the nominal pose [px]
-  double density = 0.6;          ///< kPoster: fraction of places that carry a sticker, 0..1
+  std::string texture_file;   ///< a picture (any format OpenCV reads) instead of `texture`
+  int tags = 0;               ///< AprilTags (36h11, ids 0, 1, ...) spread over the nominal view
+  double tag_side_px = 32.0;  ///< side of a tag's black square in the nominal pose [px]
+  double density = 0.6;       ///< kPoster: fraction of places that carry a sticker, 0..1
+  /// Of the texture: log reflectance is scaled by this around that of mid grey, 0..2. 1 = as drawn.
+  double contrast = 1.0;
+  int lamps = 0;  ///< bright discs spread over the nominal view, 0..20; they follow the flicker
+  double lamp_radiance = 4.0;    ///< of a lamp, 1 = a white surface at illumination 1: saturates
+  double lamp_radius_px = 9.0;   ///< in the nominal pose [px]
   double optics_sigma_px = 0.6;  ///< blur of lens and photodiode area, Gaussian sigma [px]
   double illumination = 1.0;     ///< irradiance of a white surface, 1 = bright room
   double flicker_hz = 0.0;       ///< frequency of the light's modulation, 0 = none [Hz]
@@ -54,6 +62,15 @@ struct MotionSettings {
 enum class ColorFilter {
   kNone,       ///< monochrome sensor
   kBayerRggb,  ///< each photosite sees one colour, in its frame and in its events alike
+};
+
+/// How hot pixels lie together.
+enum class HotPixelShape {
+  kSingle,
+  kPair,    ///< two beside each other
+  kBlock,   ///< 2x2
+  kRow,     ///< 1x4
+  kColumn,  ///< whole columns
 };
 
 /// The pixel array. Defaults are those of a DAVIS346 with the biases libcaer sets at start-up, with
@@ -75,10 +92,16 @@ struct SensorSettings {
   double shot_noise_dark_hz = 5.0;    ///< ... and where it is 0; linear in between
   double photoreceptor_bright_hz = 0.0;  ///< cut-off of a first-order low-pass at irradiance 1 [Hz]
   double photoreceptor_dark_hz = 0.0;    ///< ... at irradiance 0; both 0 = unlimited bandwidth
-  double hot_pixel_fraction = 0.0;       ///< pixels that fire ON all the time, 0..1
-  double hot_pixel_rate_hz = 1000.0;     ///< ... at this rate [1/s]
-  std::int64_t clock_us = 1;             ///< event times are rounded down to multiples of this
-  bool random_initial_level = true;  ///< levels at the start anywhere between the two thresholds
+  /// Below this many DN (of white_dn at irradiance 1) the pixel's log becomes linear, as in v2e
+  /// (Hu et al., CVPR Workshops 2021; 20 DN there): f(I) = I ln(D) / D for I < D, else ln(I).
+  /// 0 = a log everywhere [DN]
+  double linear_below_dn = 0.0;
+  std::int64_t delay_us = 0;        ///< event times are late by this, the frames' are not
+  double hot_pixel_fraction = 0.0;  ///< pixels that fire ON all the time, 0..1
+  HotPixelShape hot_pixel_shape = HotPixelShape::kSingle;
+  double hot_pixel_rate_hz = 1000.0;  ///< ... at this rate [1/s]
+  std::int64_t clock_us = 1;          ///< event times are rounded down to multiples of this
+  bool random_initial_level = true;   ///< levels at the start anywhere between the two thresholds
 
   double white_dn = 215.0;         ///< DN of a white surface at illumination 1
   double read_noise_dn = 1.5;      ///< standard deviation [DN]
@@ -162,6 +185,8 @@ struct SimulationSettings {
 SceneKind sceneKindFromName(const std::string& name);
 /// \throws std::invalid_argument listing the names that are known
 TextureKind textureKindFromName(const std::string& name);
+/// \throws std::invalid_argument listing the names that are known
+HotPixelShape hotPixelShapeFromName(const std::string& name);
 /// \throws std::invalid_argument listing the names that are known
 MotionKind motionKindFromName(const std::string& name);
 
