@@ -1,3 +1,4 @@
+#include "fast_edi/core/number_text.hpp"
 #include "parameter_keys.hpp"
 
 namespace fast_edi {

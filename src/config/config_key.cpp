@@ -1,28 +1,24 @@
 #include "config_key.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "config_file.hpp"
+#include "fast_edi/core/number_text.hpp"
 #include "nearest_key.hpp"
 
 namespace fast_edi {
 namespace {
 
-constexpr double kLargestPlainInteger = 1e15;
 /// Names within this editDistance() are one meant for the other: two neighbouring letters swapped,
 /// one letter replaced, two left out or added.
 constexpr std::size_t kMisspelling = 4;
 
+/// Nothing for infinities and NaN, which no range has.
 std::optional<double> asNumber(const YAML::Node& node) {
-  double value = 0.0;
-  if (node.IsScalar() && YAML::convert<double>::decode(node, value) && !std::isnan(value)) {
-    return value;
-  }
-  return std::nullopt;
+  // Not by yaml-cpp, which reads as the locale says.
+  return node.IsScalar() ? parseNumber(node.Scalar()) : std::nullopt;
 }
 
 std::string expected(const YAML::Node& node, const std::string& what) {
@@ -87,18 +83,6 @@ void readEntry(const YAML::Node& value, const ConfigKey& key, const std::string&
 
 }  // namespace
 
-std::string numberText(double value) {
-  std::array<char, 32> text{};
-  const bool integer = std::abs(value) < kLargestPlainInteger && value == std::floor(value);
-  std::snprintf(text.data(), text.size(), integer ? "%.0f" : "%.6g", value);
-  return text.data();
-}
-
-std::string NumberRange::text() const {
-  return min_excluded ? "> " + numberText(min) + ", <= " + numberText(max)
-                      : numberText(min) + ".." + numberText(max);
-}
-
 std::string foundText(const YAML::Node& node) {
   switch (node.Type()) {
     case YAML::NodeType::Scalar:
@@ -118,7 +102,7 @@ ConfigKey numberKey(const KeyText& text, NumberRange range,
                     std::function<void(double, ParameterDraft&)> store) {
   ConfigKey key;
   key.description = {text.name, "number", text.unit, range.text(), text.default_value, text.doc};
-  key.description.limits = NumberLimits{range.min, range.max};
+  key.description.limits = range;
   const std::string what =
       "a number " + range.text() + (text.unit.empty() ? "" : " [" + text.unit + "]");
   key.read = [range, what, store = std::move(store)](const YAML::Node& node,
@@ -133,11 +117,17 @@ ConfigKey numberKey(const KeyText& text, NumberRange range,
   return key;
 }
 
+ConfigKey numberKey(const ParameterRange& parameter, const std::string& default_value,
+                    const std::string& doc, std::function<void(double, ParameterDraft&)> store) {
+  return numberKey({parameter.name, parameter.unit, default_value, doc}, parameter.range,
+                   std::move(store));
+}
+
 ConfigKey integerKey(const KeyText& text, NumberRange range,
                      std::function<void(std::int64_t, ParameterDraft&)> store) {
   ConfigKey key;
   key.description = {text.name, "integer", text.unit, range.text(), text.default_value, text.doc};
-  key.description.limits = NumberLimits{range.min, range.max};
+  key.description.limits = range;
   const std::string what =
       "an integer " + range.text() + (text.unit.empty() ? "" : " [" + text.unit + "]");
   key.read = [range, what, store = std::move(store)](const YAML::Node& node,
@@ -151,6 +141,13 @@ ConfigKey integerKey(const KeyText& text, NumberRange range,
     return {};
   };
   return key;
+}
+
+ConfigKey integerKey(const ParameterRange& parameter, const std::string& default_value,
+                     const std::string& doc,
+                     std::function<void(std::int64_t, ParameterDraft&)> store) {
+  return integerKey({parameter.name, parameter.unit, default_value, doc}, parameter.range,
+                    std::move(store));
 }
 
 ConfigKey boolKey(const KeyText& text, std::function<void(bool, ParameterDraft&)> store) {

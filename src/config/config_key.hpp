@@ -12,6 +12,7 @@
 
 #include "config_faults.hpp"
 #include "fast_edi/config/parameter_table.hpp"
+#include "fast_edi/core/parameter_ranges.hpp"
 #include "parameter_draft.hpp"
 
 namespace fast_edi {
@@ -31,17 +32,6 @@ struct ConfigKey {
   bool may_be_file = false;
 };
 
-struct NumberRange {
-  double min = 0.0;
-  double max = 0.0;
-  bool min_excluded = false;
-
-  bool contains(double value) const {
-    return (min_excluded ? value > min : value >= min) && value <= max;
-  }
-  std::string text() const;
-};
-
 /// What people need to know about a key besides its type and range.
 struct KeyText {
   std::string name;
@@ -50,15 +40,18 @@ struct KeyText {
   std::string doc;
 };
 
-/// At most six digits, integers in full.
-std::string numberText(double value);
-
 /// "'0.3'", "a list", ...: what a message says was found.
 std::string foundText(const YAML::Node& node);
 
 ConfigKey numberKey(const KeyText& text, NumberRange range,
                     std::function<void(double, ParameterDraft&)> store);
+/// Name, unit and range are those of \p parameter.
+ConfigKey numberKey(const ParameterRange& parameter, const std::string& default_value,
+                    const std::string& doc, std::function<void(double, ParameterDraft&)> store);
 ConfigKey integerKey(const KeyText& text, NumberRange range,
+                     std::function<void(std::int64_t, ParameterDraft&)> store);
+ConfigKey integerKey(const ParameterRange& parameter, const std::string& default_value,
+                     const std::string& doc,
                      std::function<void(std::int64_t, ParameterDraft&)> store);
 ConfigKey boolKey(const KeyText& text, std::function<void(bool, ParameterDraft&)> store);
 ConfigKey textKey(const KeyText& text,

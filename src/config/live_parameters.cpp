@@ -1,15 +1,13 @@
 #include "fast_edi/config/live_parameters.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
 #include "contrast_keys.hpp"
 #include "fast_edi/core/contrast_from_bias.hpp"
+#include "fast_edi/core/number_text.hpp"
 #include "parameter_draft.hpp"
 #include "parameter_keys.hpp"
 
@@ -23,9 +21,8 @@ bool isThreshold(const std::string& name) {
   return name == kContrastOn || name == kContrastOff;
 }
 
-bool isZero(const YAML::Node& value) {
-  double number = 1.0;
-  return YAML::convert<double>::decode(value, number) && number == 0.0;
+bool isZero(const std::string& text) {
+  return parseNumber(text) == 0.0;
 }
 
 std::string startValue(const ParameterDescription& key, const YAML::Node& root) {
@@ -44,14 +41,7 @@ std::string scalarText(double value) {
   if (std::isinf(value)) {
     return value > 0.0 ? ".inf" : "-.inf";
   }
-  constexpr int kUsualDigits = 15;
-  constexpr int kAllDigits = 17;
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", kUsualDigits, value);
-  if (std::strtod(text.data(), nullptr) != value) {
-    std::snprintf(text.data(), text.size(), "%.*g", kAllDigits, value);
-  }
-  return text.data();
+  return exactText(value);
 }
 
 LiveParameters::LiveParameters(LoadedParameters loaded, const YAML::Node& root)
@@ -87,7 +77,7 @@ std::string LiveParameters::changeOne(const std::string& name, const std::string
     return "found '" + text + "', expected a parameter that can be changed without a new start";
   }
   const YAML::Node value(text);
-  if (isThreshold(name) && isZero(value)) {
+  if (isThreshold(name) && isZero(text)) {
     return takeFromBiases(name);
   }
   ParameterDraft draft;
@@ -95,6 +85,11 @@ std::string LiveParameters::changeOne(const std::string& name, const std::string
   std::string fault = key->read(value, draft);
   if (!fault.empty()) {
     return isThreshold(name) ? fault + ", or 0 for the one from biases" : fault;
+  }
+  try {
+    validate(draft.loaded.deblur);
+  } catch (const std::invalid_argument& error) {
+    return "found '" + text + "': " + error.what();
   }
   loaded_ = std::move(draft.loaded);
   if (isThreshold(name)) {

@@ -5,25 +5,11 @@
 #include <utility>
 
 #include "driver_keys.hpp"
-#include "fast_edi/core/temporal_fusion.hpp"
+#include "fast_edi/core/number_text.hpp"
+#include "fast_edi/core/parameter_ranges.hpp"
 
 namespace fast_edi {
 namespace {
-
-// Ranges that the meaning of a key does not give are wide: they catch values in the wrong unit.
-constexpr NumberRange kContrast{0.0, 10.0, true};
-constexpr NumberRange kExposureUs{0.0, 1e6};
-constexpr NumberRange kTimeOffsetUs{-3e15, 3e15};  // either clock may start at 1970 or at 0
-constexpr NumberRange kTimeoutMs{0.0, 60e3, true};
-constexpr NumberRange kJumpMs{0.0, 3600e3, true};
-constexpr NumberRange kBufferedEvents{1.0, 4e9};
-constexpr NumberRange kLatentImages{0.0, kMaxLatentImages};
-constexpr NumberRange kOffsetDn{0.0, 255.0};
-constexpr NumberRange kFilterRange{0.0, 10.0, true};
-constexpr NumberRange kFilterSigmaPx{0.0, 10.0, true};
-constexpr NumberRange kFilterRestore{0.0, static_cast<double>(GainRestoration::kMaxStrength)};
-constexpr NumberRange kFilterTemporal{0.0, TemporalFusion::kMaxWeight};
-constexpr NumberRange kFrameNoiseDn{0.0, 50.0, true};
 
 using TimeMember = std::int64_t DeblurParameters::*;
 using InstantMember = ExposureInstant DeblurParameters::*;
@@ -60,11 +46,11 @@ std::int64_t toNanoseconds(double value, std::int64_t ns_per_unit) {
 }
 
 /// A duration, in the unit of the key outside and in nanoseconds inside.
-ConfigKey timeKey(const std::string& name, const std::string& unit, std::int64_t ns_per_unit,
-                  NumberRange range, TimeMember member, const std::string& doc) {
+ConfigKey timeKey(const ParameterRange& parameter, std::int64_t ns_per_unit, TimeMember member,
+                  const std::string& doc) {
   const double default_value =
       static_cast<double>(DeblurParameters{}.*member) / static_cast<double>(ns_per_unit);
-  return numberKey({name, unit, numberText(default_value), doc}, range,
+  return numberKey(parameter, numberText(default_value), doc,
                    [member, ns_per_unit](double value, ParameterDraft& draft) {
                      draft.loaded.deblur.*member = toNanoseconds(value, ns_per_unit);
                    });
@@ -78,12 +64,12 @@ ConfigKey instantKey(const std::string& name, InstantMember member, const std::s
       });
 }
 
-ConfigKey thresholdKey(const std::string& name, double ContrastThresholds::*member,
+ConfigKey thresholdKey(const ParameterRange& parameter, double ContrastThresholds::*member,
                        const std::string& polarity) {
-  return numberKey({name, "natural log", "from `biases`",
-                    "contrast threshold of " + polarity +
-                        " events; overrides `biases`. Set live to 0 to use the one from `biases`"},
-                   kContrast, [member](double value, ParameterDraft& draft) {
+  return numberKey(parameter, "from `biases`",
+                   "contrast threshold of " + polarity +
+                       " events; overrides `biases`. Set live to 0 to use the one from `biases`",
+                   [member](double value, ParameterDraft& draft) {
                      draft.loaded.deblur.thresholds.*member = value;
                    });
 }
@@ -110,21 +96,43 @@ ConfigKey exposureSourceKey() {
       });
 }
 
+ConfigKey eventPolarityKey() {
+  const Choices<EventPolarity> choices = {{"normal", EventPolarity::kNormal},
+                                          {"inverted", EventPolarity::kInverted}};
+  return choiceKey<EventPolarity>(
+      {"event_polarity", "", wordFor(choices, EventMapping{}.polarity),
+       "`inverted`: the recording calls events of pixels that grow darker ON"},
+      choices, [](EventPolarity value, ParameterDraft& draft) {
+        draft.loaded.deblur.event_mapping.polarity = value;
+      });
+}
+
+ConfigKey eventOrientationKey() {
+  const Choices<EventOrientation> choices(kEventOrientations.begin(), kEventOrientations.end());
+  return choiceKey<EventOrientation>(
+      {"event_orientation", "", toString(EventMapping{}.orientation),
+       "how the events are turned to fit the frames, e.g. `flip_y` where their y points upwards; "
+       "`rotate_90` is clockwise"},
+      choices, [](EventOrientation value, ParameterDraft& draft) {
+        draft.loaded.deblur.event_mapping.orientation = value;
+      });
+}
+
 ConfigKey maxBufferedEventsKey() {
   return integerKey(
-      {"max_buffered_events", "events", std::to_string(DeblurParameters{}.max_buffered_events),
-       "maximum number of events in memory, buffered and queued together; memory grows as needed"},
-      kBufferedEvents, [](std::int64_t value, ParameterDraft& draft) {
+      limits::kBufferedEvents, std::to_string(DeblurParameters{}.max_buffered_events),
+      "maximum number of events in memory, buffered and queued together; memory grows as needed",
+      [](std::int64_t value, ParameterDraft& draft) {
         draft.loaded.deblur.max_buffered_events = static_cast<std::size_t>(value);
       });
 }
 
 ConfigKey latentImagesKey() {
   return integerKey(
-      {"latent_images", "images per exposure", std::to_string(LatentSampling{}.per_exposure),
-       "high-rate video on `latent/image_raw`: number of evenly spaced images in each exposure, "
-       "and at most as many in the gap before it if events cover the gap; 0 = off"},
-      kLatentImages, [](std::int64_t value, ParameterDraft& draft) {
+      limits::kLatentImages, std::to_string(LatentSampling{}.per_exposure),
+      "high-rate video on `latent/image_raw`: number of evenly spaced images in each exposure, "
+      "and at most as many in the gap before it if events cover the gap; 0 = off",
+      [](std::int64_t value, ParameterDraft& draft) {
         draft.loaded.deblur.latent.per_exposure = static_cast<int>(value);
       });
 }
@@ -154,24 +162,20 @@ std::vector<ConfigKey> filterKeys() {
               [](bool value, ParameterDraft& draft) {
                 draft.loaded.deblur.filter.gain.smooth = value;
               }),
-      numberKey({"filter_gain_range", "natural log",
-                 numberText(static_cast<double>(defaults.gain.range_log)),
-                 "differences of log gain well above this are edges"},
-                kFilterRange,
+      numberKey(limits::kFilterGainRange, numberText(static_cast<double>(defaults.gain.range_log)),
+                "differences of log gain well above this are edges",
                 [](double value, ParameterDraft& draft) {
                   draft.loaded.deblur.filter.gain.range_log = static_cast<float>(value);
                 }),
-      numberKey({"filter_gain_sigma_px", "px",
-                 numberText(static_cast<double>(defaults.gain.spatial_sigma_px)),
-                 "width of that smoothing"},
-                kFilterSigmaPx,
+      numberKey(limits::kFilterGainSigma,
+                numberText(static_cast<double>(defaults.gain.spatial_sigma_px)),
+                "width of that smoothing",
                 [](double value, ParameterDraft& draft) {
                   draft.loaded.deblur.filter.gain.spatial_sigma_px = static_cast<float>(value);
                 }),
-      numberKey({"filter_gain_restore", "", numberText(static_cast<double>(defaults.gain.restore)),
-                 "fraction by which structure of the log gains is raised: what that smoothing and "
-                 "the photoreceptor have lowered; 0 = off"},
-                kFilterRestore,
+      numberKey(limits::kFilterGainRestore, numberText(static_cast<double>(defaults.gain.restore)),
+                "fraction by which structure of the log gains is raised: what that smoothing and "
+                "the photoreceptor have lowered; 0 = off",
                 [](double value, ParameterDraft& draft) {
                   draft.loaded.deblur.filter.gain.restore = static_cast<float>(value);
                 }),
@@ -186,10 +190,9 @@ std::vector<ConfigKey> filterKeys() {
                "`reference` is `start` or `end`"},
               [](bool value, ParameterDraft& draft) { draft.loaded.deblur.filter.motion = value; }),
       numberKey(
-          {"filter_temporal", "", numberText(defaults.temporal),
-           "blend each deblurred frame with the previous one, updated by the events in between; "
-           "weight of the previous one, 0 = off"},
-          kFilterTemporal,
+          limits::kFilterTemporal, numberText(defaults.temporal),
+          "blend each deblurred frame with the previous one, updated by the events in between; "
+          "weight of the previous one, 0 = off",
           [](double value, ParameterDraft& draft) { draft.loaded.deblur.filter.temporal = value; }),
       boolKey(
           {"refine_contrast", "", boolText(DeblurParameters{}.refine_contrast),
@@ -198,9 +201,8 @@ std::vector<ConfigKey> filterKeys() {
       boolKey({"refine_delay", "", boolText(DeblurParameters{}.refine_delay),
                "learn by how much events lag behind the light, up to 5 ms"},
               [](bool value, ParameterDraft& draft) { draft.loaded.deblur.refine_delay = value; }),
-      numberKey({"frame_noise_dn", "8-bit DN", numberText(defaults.frame_noise_dn),
-                 "standard deviation of a frame's noise"},
-                kFrameNoiseDn,
+      numberKey(limits::kFrameNoise, numberText(defaults.frame_noise_dn),
+                "standard deviation of a frame's noise",
                 [](double value, ParameterDraft& draft) {
                   draft.loaded.deblur.filter.frame_noise_dn = value;
                 }),
@@ -219,8 +221,8 @@ ConfigKey biasesKey() {
 
 std::vector<ConfigKey> buildTopLevelKeys() {
   std::vector<ConfigKey> keys = {
-      live(thresholdKey("contrast_threshold_on", &ContrastThresholds::on, "ON")),
-      live(thresholdKey("contrast_threshold_off", &ContrastThresholds::off, "OFF")),
+      live(thresholdKey(limits::kContrastOn, &ContrastThresholds::on, "ON")),
+      live(thresholdKey(limits::kContrastOff, &ContrastThresholds::off, "OFF")),
       biasesKey(),
       weightingKey(),
       live(instantKey("reference", &DeblurParameters::reference,
@@ -228,20 +230,22 @@ std::vector<ConfigKey> buildTopLevelKeys() {
       live(instantKey("stamp_reference", &DeblurParameters::stamp_reference,
                       "instant of the exposure that the stamp of an input image refers to")),
       live(exposureSourceKey()),
-      live(timeKey("exposure_time_us", "us", kNanosecondsPerMicrosecond, kExposureUs,
+      live(timeKey(limits::kExposureTime, kNanosecondsPerMicrosecond,
                    &DeblurParameters::exposure_time_ns, "exposure time; 0 = unknown")),
-      live(timeKey("time_offset_us", "us", kNanosecondsPerMicrosecond, kTimeOffsetUs,
+      live(timeKey(limits::kTimeOffset, kNanosecondsPerMicrosecond,
                    &DeblurParameters::time_offset_ns,
                    "event time minus frame time of the same instant")),
-      live(timeKey("close_timeout_ms", "ms", kNanosecondsPerMillisecond, kTimeoutMs,
+      live(eventPolarityKey()),
+      live(eventOrientationKey()),
+      live(timeKey(limits::kCloseTimeout, kNanosecondsPerMillisecond,
                    &DeblurParameters::close_timeout_ns,
                    "how long after its arrival a frame waits for its last events")),
       maxBufferedEventsKey(),
-      timeKey("max_backward_jump_ms", "ms", kNanosecondsPerMillisecond, kJumpMs,
+      timeKey(limits::kBackwardJump, kNanosecondsPerMillisecond,
               &DeblurParameters::max_backward_jump_ns,
               "an event older than the newest one by more than this is a clock jump, by less a "
               "late event"),
-      timeKey("max_forward_jump_ms", "ms", kNanosecondsPerMillisecond, kJumpMs,
+      timeKey(limits::kForwardJump, kNanosecondsPerMillisecond,
               &DeblurParameters::max_forward_jump_ns,
               "an event ahead of the newest one by more than this is a clock jump, once the next "
               "array confirms it"),
@@ -249,9 +253,8 @@ std::vector<ConfigKey> buildTopLevelKeys() {
       textKey({"response_file", "", "none",
                "camera response: file with 256 natural-log irradiances, one for each 8-bit DN"},
               [](const std::string& value, ParameterDraft& draft) { draft.response_file = value; }),
-      numberKey(
-          {"response_offset_dn", "DN", "0", "offset d of the linear response: intensity = DN + d"},
-          kOffsetDn, [](double value, ParameterDraft& draft) { draft.response_offset_dn = value; }),
+      numberKey(limits::kResponseOffset, "0", "offset d of the linear response: intensity = DN + d",
+                [](double value, ParameterDraft& draft) { draft.response_offset_dn = value; }),
       textKey({"frame_id", "", "\"\"", "`frame_id` of the output if that of the input is empty"},
               [](const std::string& value, ParameterDraft& draft) {
                 draft.loaded.ros.frame_id = value;

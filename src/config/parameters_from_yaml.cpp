@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <stdexcept>
 #include <utility>
 
 #include "config_faults.hpp"
@@ -111,6 +112,12 @@ LoadedParameters load(const YAML::Node& root, const std::string& base_directory,
   decideThresholds(root, draft, faults);
   loadResponse(root, draft, faults);
   if (!faults.empty()) {
+    throw ParameterError(faults.text());
+  }
+  try {
+    validate(draft.loaded.deblur);
+  } catch (const std::invalid_argument& error) {
+    faults.add(root, error.what());
     throw ParameterError(faults.text());
   }
   draft.loaded.warnings = contrastWarnings(draft.loaded.deblur.thresholds);

@@ -5,12 +5,13 @@
 #include "config_faults.hpp"
 #include "config_key.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
+#include "fast_edi/core/number_text.hpp"
 #include "parameter_draft.hpp"
 
 namespace fast_edi {
 namespace {
 
-constexpr NumberRange kTagSize_m{0.0, 100.0, true};
+constexpr NumberRange kTagSize_m{0.001, 100.0};
 constexpr NumberRange kDecimate{1.0, 16.0};
 constexpr NumberRange kThreads{1.0, 64.0};
 constexpr NumberRange kCorrectedBits{0.0, 2.0};

@@ -6,10 +6,12 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <locale>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
+
+#include "fast_edi/core/number_text.hpp"
 
 namespace fast_edi {
 namespace {
@@ -179,11 +181,7 @@ std::size_t firstFault(const std::vector<double>& values) {
 }
 
 std::string describe(double value) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(std::numeric_limits<double>::max_digits10);
-  text << value;
-  return text.str();
+  return roundedText(value, std::numeric_limits<double>::max_digits10);
 }
 
 std::string faultText(const std::vector<double>& values, std::size_t index) {
@@ -268,13 +266,11 @@ CameraResponse CameraResponse::fromFile(const std::string& path) {
     std::istringstream words(line.substr(0, line.find('#')));
     std::string word;
     while (words >> word) {
-      std::istringstream number(word);
-      number.imbue(std::locale::classic());
-      double value = 0.0;
-      if (!(number >> value) || !number.eof()) {
+      const std::optional<double> value = parseNumber(word);
+      if (!value) {
         throw std::runtime_error(place + "'" + word + "' is not a number");
       }
-      values.push_back(value);
+      values.push_back(*value);
       if (values.size() > kTableSize) {
         throw std::runtime_error(place + "more than 256 values, expected one for each 8-bit DN");
       }
@@ -319,18 +315,20 @@ void CameraResponse::applyGain(const ImageView& in, const float* gain,
     const std::uint8_t* from = in.row(y);
     std::uint8_t* to = out.row(y);
     const float* row_gain = gain + static_cast<std::size_t>(y) * width;
-    switch (in.format) {
-      case PixelFormat::kMono8:
-      case PixelFormat::kBayer8:
-        apply8(from, row_gain, width, to);
-        break;
-      case PixelFormat::kMono16:
-        apply16(from, row_gain, width, to);
-        break;
-      case PixelFormat::kColor8:
-        applyColor8(from, row_gain, width, to);
-        break;
+    if (samplesPerPixel(in.format) == 1) {
+      applySamples(in.format, from, row_gain, width, to);
+    } else {
+      applyColor(in.format, from, row_gain, width, to);
     }
+  }
+}
+
+void CameraResponse::applySamples(PixelFormat format, const std::uint8_t* in, const float* gain,
+                                  std::size_t count, std::uint8_t* out) const {
+  if (bytesPerSample(format) == 2) {
+    apply16(in, gain, count, out);
+  } else {
+    apply8(in, gain, count, out);
   }
 }
 
@@ -353,18 +351,24 @@ void CameraResponse::apply16(const std::uint8_t* in, const float* gain, std::siz
   }
 }
 
-void CameraResponse::applyColor8(const std::uint8_t* in, const float* gain, std::size_t width,
-                                 std::uint8_t* out) const {
-  // Three samples per gain do not vectorise; one gain for each sample does.
-  constexpr std::size_t kColors = 3;
+void CameraResponse::applyColor(PixelFormat format, const std::uint8_t* in, const float* gain,
+                                std::size_t width, std::uint8_t* out) const {
+  // Several samples per gain do not vectorise; one gain for each sample does. That of alpha is 1,
+  // which leaves a level as it is.
+  constexpr std::size_t kMostSamples = 4;
   constexpr std::size_t kBlockPixels = 128;
-  std::array<float, kBlockPixels * kColors> sample_gain{};
+  const auto colors = static_cast<std::size_t>(channels(format));
+  const auto samples = static_cast<std::size_t>(samplesPerPixel(format));
+  const auto bytes = static_cast<std::size_t>(bytesPerPixel(format));
+  std::array<float, kBlockPixels * kMostSamples> sample_gain;
+  sample_gain.fill(1.0F);
   for (std::size_t begin = 0; begin < width; begin += kBlockPixels) {
     const std::size_t count = std::min(kBlockPixels, width - begin);
     for (std::size_t i = 0; i < count; ++i) {
-      std::fill_n(&sample_gain[i * kColors], kColors, gain[begin + i]);
+      std::fill_n(&sample_gain[i * samples], colors, gain[begin + i]);
     }
-    apply8(in + begin * kColors, sample_gain.data(), count * kColors, out + begin * kColors);
+    applySamples(format, in + begin * bytes, sample_gain.data(), count * samples,
+                 out + begin * bytes);
   }
 }
 

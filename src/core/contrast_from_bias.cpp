@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
+
+#include "fast_edi/core/number_text.hpp"
+#include "fast_edi/core/parameter_ranges.hpp"
 
 namespace fast_edi {
 namespace {
@@ -30,9 +32,8 @@ constexpr double kUsualMinimumRatio = 0.5;
 constexpr double kUsualMaximumRatio = 2.0;
 
 std::string format(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
+  constexpr int kDigits = 4;
+  return roundedText(value, kDigits);
 }
 
 std::string describe(const char* name, const BiasSetting& bias) {
@@ -57,6 +58,15 @@ std::string rangeFault(const BiasSetting& bias) {
     text += (text.empty() ? "" : "\n") + fault;
   }
   throw std::invalid_argument(text);
+}
+
+/// \throws std::invalid_argument when no such threshold can be set
+void requireFromBiases(const ParameterRange& parameter, double threshold) {
+  try {
+    requireWithin(parameter, threshold);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("from these biases ") + error.what());
+  }
 }
 
 void warnIfUnusual(const char* name, double threshold, std::vector<std::string>& warnings) {
@@ -143,9 +153,11 @@ ContrastThresholds contrastFromBias(const BiasConfiguration& configuration,
   ContrastThresholds thresholds;
   if (needed.on) {
     thresholds.on = gain * std::log(on / diff);
+    requireFromBiases(limits::kContrastOn, thresholds.on);
   }
   if (needed.off) {
     thresholds.off = -gain * std::log(off / diff);
+    requireFromBiases(limits::kContrastOff, thresholds.off);
   }
   return thresholds;
 }

@@ -39,10 +39,10 @@ PixelEventLists::Limits limitsOf(const DeblurParameters& parameters) {
 /// Whether what was learned from the recording under \p a is what would be learned under \p b.
 bool learnAlike(const DeblurParameters& a, const DeblurParameters& b) {
   return a.thresholds == b.thresholds && a.weighting == b.weighting && a.response == b.response &&
-         a.time_offset_ns == b.time_offset_ns && a.stamp_reference == b.stamp_reference &&
-         a.exposure_source == b.exposure_source && a.exposure_time_ns == b.exposure_time_ns &&
-         a.filter.enabled == b.filter.enabled && a.refine_contrast == b.refine_contrast &&
-         a.refine_delay == b.refine_delay;
+         a.time_offset_ns == b.time_offset_ns && a.event_mapping == b.event_mapping &&
+         a.stamp_reference == b.stamp_reference && a.exposure_source == b.exposure_source &&
+         a.exposure_time_ns == b.exposure_time_ns && a.filter.enabled == b.filter.enabled &&
+         a.refine_contrast == b.refine_contrast && a.refine_delay == b.refine_delay;
 }
 
 struct WaitingFrame {
@@ -100,6 +100,9 @@ class Deblurrer::Impl {
   DeblurStatus status() const;
 
  private:
+  // Events in
+  void takeEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence);
+
   // Frames in
   void beginFrameEpoch(bool after_time_jump);
   void takeMatches();
@@ -138,6 +141,7 @@ class Deblurrer::Impl {
   DeblurCounters counters_;
   ExposurePairing pairing_;
   EventStream events_;
+  std::vector<std::uint8_t> mapped_events_;  ///< the last array's records; keeps its memory
   WindowPredictor predictor_;
   std::int64_t now_ns_ = INT64_MIN;
   std::optional<std::int64_t> last_events_ns_;  ///< arrival of the last array that holds any
@@ -176,9 +180,22 @@ void Deblurrer::Impl::addEvents(const WireEvents& events, SensorSize size, std::
   if (!events.empty()) {
     last_events_ns_ = now_ns_;
   }
-  events_.take(events, size, sequence);
+  takeEvents(events, size, sequence);
   closeReady();
   follow();
+}
+
+/// Where another orientation or polarity becomes that of the frames.
+void Deblurrer::Impl::takeEvents(const WireEvents& events, SensorSize size,
+                                 std::uint32_t sequence) {
+  const EventMapping& mapping = parameters_.event_mapping;
+  if (mapping.isIdentity()) {
+    events_.take(events, size, sequence);
+    return;
+  }
+  mapped_events_.assign(events.data, events.data + events.count * kWireEventBytes);
+  mapping.apply(mapped_events_.data(), events.count, size);
+  events_.take({mapped_events_.data(), events.count}, mapping.apply(size), sequence);
 }
 
 void Deblurrer::Impl::addFrame(InputFrame frame, std::int64_t now_ns) {
@@ -260,6 +277,7 @@ void Deblurrer::Impl::setParameters(const DeblurParameters& parameters) {
   if (!learnAlike(parameters, requested_)) {
     calibration_.reset();
   }
+  const bool mapping_changes = parameters.event_mapping != parameters_.event_mapping;
   requested_ = parameters;
   parameters_ = parameters;
   if (calibration_) {
@@ -268,6 +286,9 @@ void Deblurrer::Impl::setParameters(const DeblurParameters& parameters) {
     parameters_.time_offset_ns += learned.event_delay_ns;
   }
   events_.setLimits(limitsOf(parameters_));
+  if (mapping_changes) {
+    events_.restart();
+  }
   pairing_.setTimeout(parameters_.close_timeout_ns);
   if (source_changes) {
     pairing_.restart();
@@ -299,11 +320,12 @@ DeblurStatus Deblurrer::Impl::status() const {
   status.waiting_frames = waiting_.size();
   status.events_seen = events_.seen();
   status.sensor_size = frame_size_;
-  status.buffer_bytes =
-      events_.memoryBytes() + (gain_.capacity() + unfiltered_gain_.capacity()) * sizeof(float) +
-      fusion_.memoryBytes() + latent_image_.memoryBytes() + video_.memoryBytes() +
-      middle_.memoryBytes() + compensation_.memoryBytes() +
-      (integral_ ? integral_->memoryBytes() : 0) + (calibration_ ? calibration_->memoryBytes() : 0);
+  status.buffer_bytes = events_.memoryBytes() + mapped_events_.capacity() +
+                        (gain_.capacity() + unfiltered_gain_.capacity()) * sizeof(float) +
+                        fusion_.memoryBytes() + latent_image_.memoryBytes() + video_.memoryBytes() +
+                        middle_.memoryBytes() + compensation_.memoryBytes() +
+                        (integral_ ? integral_->memoryBytes() : 0) +
+                        (calibration_ ? calibration_->memoryBytes() : 0);
   if (events_.lists() != nullptr) {
     status.sensor_size = events_.lists()->size();
   }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "fast_edi/core/number_text.hpp"
 #include "gain_kernel.hpp"
 #include "running_integral.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 
 void requirePositive(const char* name, double threshold) {
   if (!std::isfinite(threshold) || threshold <= 0.0) {
-    throw std::invalid_argument(std::string(name) + " is " + std::to_string(threshold) +
+    throw std::invalid_argument(std::string(name) + " is " + numberText(threshold) +
                                 ", expected a finite number > 0");
   }
 }

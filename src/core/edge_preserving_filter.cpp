@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "fast_edi/core/number_text.hpp"
 #include "range_weight.hpp"
 #include "vector_clones.hpp"
 
@@ -55,14 +56,15 @@ EdgePreservingFilter::EdgePreservingFilter(SensorSize size, const Settings& sett
       settings_(settings),
       margin_px_(kRadius * settings.stride_px),
       padded_width_(static_cast<std::size_t>(size.width + 2 * margin_px_)) {
-  const auto positive = [](const char* name, float sigma) {
-    if (!std::isfinite(sigma) || sigma <= 0.0F) {
-      throw std::invalid_argument(std::string(name) + " is " + std::to_string(sigma) +
-                                  ", expected a finite number > 0");
+  const auto require = [](const char* name, float sigma) {
+    if (!std::isfinite(sigma) || sigma < kMinSigma) {
+      throw std::invalid_argument(
+          std::string(name) + " is " + numberText(static_cast<double>(sigma)) +
+          ", expected a finite number of at least " + numberText(static_cast<double>(kMinSigma)));
     }
   };
-  positive("range sigma", settings.range_sigma);
-  positive("spatial sigma", settings.spatial_sigma);
+  require("range sigma", settings.range_sigma);
+  require("spatial sigma", settings.spatial_sigma);
   if (settings.stride_px != 1 && settings.stride_px != 2) {
     throw std::invalid_argument("stride is " + std::to_string(settings.stride_px) +
                                 " px, expected 1 or 2");

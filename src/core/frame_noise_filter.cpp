@@ -1,6 +1,7 @@
 #include "fast_edi/core/frame_noise_filter.hpp"
 
 #include "fast_edi/core/image_plane.hpp"
+#include "fast_edi/core/stored_image.hpp"
 
 namespace fast_edi {
 namespace {
@@ -11,9 +12,9 @@ constexpr float kRangeInNoise = 3.0F;
 
 EdgePreservingFilter::Settings filterSettings(PixelFormat format,
                                               const FrameNoiseFilter::Settings& settings) {
-  const float dn = format == PixelFormat::kMono16 ? static_cast<float>(kDn16PerDn8) : 1.0F;
+  const float dn = static_cast<float>(dnPerDn8(format));
   return {kRangeInNoise * settings.noise_dn * dn, settings.spatial_sigma_px,
-          format == PixelFormat::kBayer8 ? 2 : 1};
+          isBayer(format) ? 2 : 1};
 }
 
 }  // namespace
@@ -25,6 +26,9 @@ FrameNoiseFilter::FrameNoiseFilter(SensorSize size, PixelFormat format, const Se
       plane_(size.pixelCount()) {}
 
 void FrameNoiseFilter::apply(const ImageView& in, const MutableImageView& out) {
+  if (hasAlpha(format_) && in.data != out.data) {
+    copyPixels(in, out);
+  }
   for (int channel = 0; channel < channels(format_); ++channel) {
     loadPlane(in, channel, plane_.data());
     // A weighted mean of levels lies within their range, so nothing needs to be clamped.

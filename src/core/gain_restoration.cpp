@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "fast_edi/core/number_text.hpp"
 #include "vector_clones.hpp"
 
 namespace fast_edi {
@@ -52,8 +53,8 @@ GainRestoration::GainRestoration(SensorSize size, float strength)
       means_(static_cast<std::size_t>(size.width)),
       original_(size.pixelCount()) {
   if (!(strength >= 0.0F && strength <= kMaxStrength)) {
-    throw std::invalid_argument("gain restoration is " + std::to_string(strength) +
-                                ", expected 0 to " + std::to_string(kMaxStrength));
+    throw std::invalid_argument("gain restoration is " + numberText(static_cast<double>(strength)) +
+                                ", expected 0 to " + numberText(static_cast<double>(kMaxStrength)));
   }
 }
 

@@ -8,20 +8,21 @@ namespace {
 /// Truncation rounds to nearest after this is added to a number that is not negative.
 constexpr float kHalf = 0.5F;
 
+/// \param stride samples from one pixel to the next
 template <typename Level>
-void loadRow(const std::uint8_t* in, std::size_t count, std::size_t channels, float* out) {
+void loadRow(const std::uint8_t* in, std::size_t count, std::size_t stride, float* out) {
   for (std::size_t i = 0; i < count; ++i) {
     Level level;
-    std::memcpy(&level, in + i * channels * sizeof(Level), sizeof(Level));
+    std::memcpy(&level, in + i * stride * sizeof(Level), sizeof(Level));
     out[i] = static_cast<float>(level);
   }
 }
 
 template <typename Level>
-void storeRow(const float* in, std::size_t count, std::size_t channels, std::uint8_t* out) {
+void storeRow(const float* in, std::size_t count, std::size_t stride, std::uint8_t* out) {
   for (std::size_t i = 0; i < count; ++i) {
     const auto level = static_cast<Level>(static_cast<int>(in[i] + kHalf));
-    std::memcpy(out + i * channels * sizeof(Level), &level, sizeof(Level));
+    std::memcpy(out + i * stride * sizeof(Level), &level, sizeof(Level));
   }
 }
 
@@ -29,26 +30,30 @@ void storeRow(const float* in, std::size_t count, std::size_t channels, std::uin
 
 void loadPlane(const ImageView& image, int channel, float* plane) {
   const auto width = static_cast<std::size_t>(image.size.width);
-  const auto count = static_cast<std::size_t>(channels(image.format));
+  const auto stride = static_cast<std::size_t>(samplesPerPixel(image.format));
+  const int bytes = bytesPerSample(image.format);
   for (int y = 0; y < image.size.height; ++y) {
     float* row = plane + static_cast<std::size_t>(y) * width;
-    if (image.format == PixelFormat::kMono16) {
-      loadRow<std::uint16_t>(image.row(y), width, count, row);
+    const std::uint8_t* in = image.row(y) + channel * bytes;
+    if (bytes == 2) {
+      loadRow<std::uint16_t>(in, width, stride, row);
     } else {
-      loadRow<std::uint8_t>(image.row(y) + channel, width, count, row);
+      loadRow<std::uint8_t>(in, width, stride, row);
     }
   }
 }
 
 void storePlane(const float* plane, int channel, const MutableImageView& image) {
   const auto width = static_cast<std::size_t>(image.size.width);
-  const auto count = static_cast<std::size_t>(channels(image.format));
+  const auto stride = static_cast<std::size_t>(samplesPerPixel(image.format));
+  const int bytes = bytesPerSample(image.format);
   for (int y = 0; y < image.size.height; ++y) {
     const float* row = plane + static_cast<std::size_t>(y) * width;
-    if (image.format == PixelFormat::kMono16) {
-      storeRow<std::uint16_t>(row, width, count, image.row(y));
+    std::uint8_t* out = image.row(y) + channel * bytes;
+    if (bytes == 2) {
+      storeRow<std::uint16_t>(row, width, stride, out);
     } else {
-      storeRow<std::uint8_t>(row, width, count, image.row(y) + channel);
+      storeRow<std::uint8_t>(row, width, stride, out);
     }
   }
 }

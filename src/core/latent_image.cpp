@@ -1,36 +1,14 @@
 #include "fast_edi/core/latent_image.hpp"
 
-#include <cmath>
-#include <stdexcept>
-#include <string>
-
-#include "fast_edi/core/temporal_fusion.hpp"
+#include "fast_edi/core/parameter_ranges.hpp"
 
 namespace fast_edi {
-namespace {
-
-void requirePositive(const char* name, double value) {
-  if (!std::isfinite(value) || value <= 0.0) {
-    throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) +
-                                ", expected a finite number > 0");
-  }
-}
-
-}  // namespace
-
 void validate(const FilterParameters& parameters) {
-  requirePositive("filter_gain_range", static_cast<double>(parameters.gain.range_log));
-  requirePositive("filter_gain_sigma_px", static_cast<double>(parameters.gain.spatial_sigma_px));
-  const float restore = parameters.gain.restore;
-  if (!(restore >= 0.0F && restore <= GainRestoration::kMaxStrength)) {
-    throw std::invalid_argument("filter_gain_restore is " + std::to_string(restore) +
-                                ", expected 0 to " + std::to_string(GainRestoration::kMaxStrength));
-  }
-  requirePositive("frame_noise_dn", parameters.frame_noise_dn);
-  if (!(parameters.temporal >= 0.0 && parameters.temporal <= TemporalFusion::kMaxWeight)) {
-    throw std::invalid_argument("filter_temporal is " + std::to_string(parameters.temporal) +
-                                ", expected 0 to " + std::to_string(TemporalFusion::kMaxWeight));
-  }
+  requireWithin(limits::kFilterGainRange, parameters.gain.range_log);
+  requireWithin(limits::kFilterGainSigma, parameters.gain.spatial_sigma_px);
+  requireWithin(limits::kFilterGainRestore, parameters.gain.restore);
+  requireWithin(limits::kFrameNoise, parameters.frame_noise_dn);
+  requireWithin(limits::kFilterTemporal, parameters.temporal);
 }
 
 LatentImage::LatentImage(const FilterParameters& parameters) : parameters_(parameters) {}

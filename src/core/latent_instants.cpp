@@ -1,18 +1,14 @@
 #include "fast_edi/core/latent_instants.hpp"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
+
+#include "fast_edi/core/parameter_ranges.hpp"
 
 namespace fast_edi {
 namespace {
 
-void requireWithin(const char* name, int value, int highest) {
-  if (value < 0 || value > highest) {
-    throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) +
-                                ", expected 0.." + std::to_string(highest));
-  }
-}
+constexpr ParameterRange kFilmRateRange{
+    "rate of latent images", "Hz", {0.0, static_cast<double>(kMaxLatentRate_hz)}};
 
 /// The middles of \p count equal parts.
 std::vector<std::int64_t> middles(const ExposureInterval& interval, std::int64_t count) {
@@ -36,8 +32,8 @@ std::vector<std::int64_t> filmInstants(const ExposureInterval& interval, int rat
 }  // namespace
 
 void validate(const LatentSampling& sampling) {
-  requireWithin("latent_images", sampling.per_exposure, kMaxLatentImages);
-  requireWithin("rate of latent images [Hz]", sampling.rate_hz, kMaxLatentRate_hz);
+  requireWithin(limits::kLatentImages, static_cast<double>(sampling.per_exposure));
+  requireWithin(kFilmRateRange, static_cast<double>(sampling.rate_hz));
 }
 
 // Whole seconds apart: number * 1e9 would overflow after a fraction of the time since 1970.

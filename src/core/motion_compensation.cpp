@@ -107,8 +107,8 @@ void MotionCompensation::fit(SensorSize size, PixelFormat format) {
   }
   size_ = size;
   format_ = format;
-  stride_px_ = format == PixelFormat::kBayer8 ? 2 : 1;
-  dn_ = format == PixelFormat::kMono16 ? static_cast<float>(kDn16PerDn8) : 1.0F;
+  stride_px_ = isBayer(format) ? 2 : 1;
+  dn_ = static_cast<float>(dnPerDn8(format));
   flow_.emplace(size);
   const std::vector<float> plane(size.pixelCount());
   reference_.assign(static_cast<std::size_t>(channels(format)), plane);

@@ -52,8 +52,7 @@ bool TemporalFusion::isBridged(const Frame& frame, const EventStream& events,
 
 void TemporalFusion::blend(float weight, const MutableImageView& image) {
   constexpr float kHighest_dn = 255.0F;
-  const float highest =
-      image.format == PixelFormat::kMono16 ? kHighest_dn * kDn16PerDn8 : kHighest_dn;
+  const float highest = kHighest_dn * static_cast<float>(dnPerDn8(image.format));
   own_plane_.resize(image.size.pixelCount());
   carried_plane_.resize(image.size.pixelCount());
   for (int channel = 0; channel < channels(image.format); ++channel) {

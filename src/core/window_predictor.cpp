@@ -28,8 +28,9 @@ std::optional<ExposureInterval> WindowPredictor::predict() const {
   }
   std::array<std::int64_t, kPeriods> sorted = periods_ns_;
   const std::size_t count = std::min(period_count_, kPeriods);
-  std::sort(sorted.begin(), sorted.begin() + count);
-  const std::int64_t start_ns = last_->start_ns + sorted[(count - 1) / 2];
+  const auto median = sorted.begin() + (count - 1) / 2;
+  std::nth_element(sorted.begin(), median, sorted.begin() + count);
+  const std::int64_t start_ns = last_->start_ns + *median;
   return ExposureInterval{start_ns, start_ns + last_->length()};
 }
 

@@ -76,7 +76,7 @@ TEST(LiveParameters, AcceptWhatAStartAccepts) {
     if (!key.live || !key.limits) {
       continue;
     }
-    const NumberLimits& limits = *key.limits;
+    const NumberRange& limits = *key.limits;
     for (const double value :
          {limits.lowest, limits.highest, limits.lowest - 1.0, limits.highest + 1.0,
           std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
@@ -109,7 +109,7 @@ TEST(LiveParameters, ARefusedValueLeavesTheOldOneAndNotTheOthers) {
                    {"contrast", "0.3"}}),
       ElementsAre("contrast: found '0.3', expected a parameter that can be changed without a new "
                   "start",
-                  "contrast_threshold_off: found '-0.2', expected a number > 0, <= 10 [natural "
+                  "contrast_threshold_off: found '-0.2', expected a number 0.01..10 [natural "
                   "log], or 0 for the one from biases",
                   "passthrough: found '2', expected true or false",
                   "reference: found 'middle', expected one of: start, mid, end",

@@ -47,7 +47,7 @@ TEST(TagDetectorParametersTest, FaultsAreNamedAllAtOnce) {
   const std::string message = refusal("{famly: 36h11, family: 36h12, tag_size_m: 0, threads: 1.5}");
   EXPECT_THAT(message, HasSubstr("famly: unknown, the nearest known key is family"));
   EXPECT_THAT(message, HasSubstr("family: found '36h12', expected one of: 36h11, "));
-  EXPECT_THAT(message, HasSubstr("tag_size_m: found '0', expected a number > 0, <= 100 [m]"));
+  EXPECT_THAT(message, HasSubstr("tag_size_m: found '0', expected a number 0.001..100 [m]"));
   EXPECT_THAT(message, HasSubstr("threads: found '1.5', expected an integer 1..64"));
   EXPECT_THAT(refusal("{decimate: 0.5}"), HasSubstr("decimate: found '0.5'"));
   EXPECT_THAT(refusal("[1]"), HasSubstr("expected a map"));

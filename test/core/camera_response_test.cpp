@@ -54,8 +54,14 @@ std::vector<NamedResponse> responses() {
           {"uneven table", CameraResponse::fromTable(unevenTable())}};
 }
 
-constexpr PixelFormat kFormats[] = {PixelFormat::kMono8, PixelFormat::kBayer8, PixelFormat::kMono16,
-                                    PixelFormat::kColor8};
+constexpr PixelFormat kFormats[] = {PixelFormat::kMono8,       PixelFormat::kBayer8,
+                                    PixelFormat::kMono16,      PixelFormat::kColor8,
+                                    PixelFormat::kBayer16,     PixelFormat::kColor16,
+                                    PixelFormat::kColorAlpha8, PixelFormat::kColorAlpha16};
+
+int levelsOf(PixelFormat format) {
+  return bytesPerSample(format) == 2 ? kLevels16 : kLevels8;
+}
 
 /// An image that owns its memory, with padding behind each row.
 struct Image {
@@ -89,17 +95,26 @@ Image randomImage(SensorSize size, PixelFormat format, unsigned seed) {
   return image;
 }
 
-/// All levels of one depth in a single row, through one gain.
+int sampleOf(const Image& image, int pixel, int sample) {
+  const std::uint8_t* bytes = image.bytes.data() + pixel * bytesPerPixel(image.format) +
+                              sample * bytesPerSample(image.format);
+  if (bytesPerSample(image.format) == 1) {
+    return bytes[0];
+  }
+  std::uint16_t value = 0;
+  std::memcpy(&value, bytes, sizeof(value));
+  return value;
+}
+
+/// All levels of one depth in a single row, through one gain. Alpha holds the same levels.
 std::vector<int> applyToAllLevels(const CameraResponse& response, PixelFormat format, float gain) {
-  const int levels = format == PixelFormat::kMono16 ? kLevels16 : kLevels8;
+  const int levels = levelsOf(format);
   Image in({levels, 1}, format);
   for (int level = 0; level < levels; ++level) {
-    if (format == PixelFormat::kMono16) {
+    for (int sample = 0; sample < samplesPerPixel(format); ++sample) {
       const auto value = static_cast<std::uint16_t>(level);
-      std::memcpy(in.bytes.data() + 2 * level, &value, sizeof(value));
-    } else {
-      const int samples = channels(format);
-      std::fill_n(in.bytes.begin() + samples * level, samples, static_cast<std::uint8_t>(level));
+      std::memcpy(in.bytes.data() + level * bytesPerPixel(format) + sample * bytesPerSample(format),
+                  &value, static_cast<std::size_t>(bytesPerSample(format)));
     }
   }
   Image out({levels, 1}, format);
@@ -107,15 +122,12 @@ std::vector<int> applyToAllLevels(const CameraResponse& response, PixelFormat fo
   response.applyGain(in.view(), gains.data(), out.mutableView());
   std::vector<int> result;
   for (int level = 0; level < levels; ++level) {
-    if (format == PixelFormat::kMono16) {
-      std::uint16_t value = 0;
-      std::memcpy(&value, out.bytes.data() + 2 * level, sizeof(value));
-      result.push_back(value);
-    } else {
-      const std::uint8_t* samples = &out.bytes[static_cast<std::size_t>(channels(format) * level)];
-      EXPECT_TRUE(std::all_of(samples, samples + channels(format),
-                              [&](std::uint8_t sample) { return sample == samples[0]; }));
-      result.push_back(samples[0]);
+    result.push_back(sampleOf(out, level, 0));
+    for (int channel = 1; channel < channels(format); ++channel) {
+      EXPECT_EQ(sampleOf(out, level, channel), result.back());
+    }
+    if (hasAlpha(format)) {
+      EXPECT_EQ(sampleOf(out, level, channels(format)), level) << "alpha";
     }
   }
   return result;
@@ -151,11 +163,11 @@ TEST(CameraResponse, AgreesWithASlowSearch) {
   std::uniform_real_distribution<double> log_gain(-3.0, 3.0);
   for (const auto& [name, response] : responses()) {
     for (const PixelFormat format : kFormats) {
-      const double scale = format == PixelFormat::kMono16 ? 257.0 : 1.0;
+      const double scale = dnPerDn8(format);
       for (int trial = 0; trial < 5; ++trial) {
         const auto gain = static_cast<float>(std::exp(log_gain(random)));
         const std::vector<int> result = applyToAllLevels(response, format, gain);
-        const std::size_t stride = format == PixelFormat::kMono16 ? 101 : 1;
+        const std::size_t stride = bytesPerSample(format) == 2 ? 101 : 1;
         for (std::size_t level = 0; level < result.size(); level += stride) {
           const double exposure =
               response.exposure(static_cast<double>(level) / scale) * static_cast<double>(gain);
@@ -209,7 +221,7 @@ TEST(CameraResponse, ExtremeGainsGiveTheEndsOfTheRange) {
   using Limits = std::numeric_limits<float>;
   for (const auto& [name, response] : responses()) {
     for (const PixelFormat format : kFormats) {
-      const int top = format == PixelFormat::kMono16 ? kLevels16 - 1 : kLevels8 - 1;
+      const int top = levelsOf(format) - 1;
       for (const float tiny : {Limits::min(), Limits::denorm_min(), 1e-30F}) {
         EXPECT_THAT(applyToAllLevels(response, format, tiny), Each(0)) << name << ", gain " << tiny;
       }

@@ -52,7 +52,9 @@ TEST(ImagePlane, WritesRoundedAndNothingElse) {
 
 TEST(ImagePlane, WritesWhatItRead) {
   for (const PixelFormat format :
-       {PixelFormat::kMono8, PixelFormat::kBayer8, PixelFormat::kMono16, PixelFormat::kColor8}) {
+       {PixelFormat::kMono8, PixelFormat::kBayer8, PixelFormat::kMono16, PixelFormat::kColor8,
+        PixelFormat::kBayer16, PixelFormat::kColor16, PixelFormat::kColorAlpha8,
+        PixelFormat::kColorAlpha16}) {
     const auto step = static_cast<std::size_t>(kSize.width * bytesPerPixel(format));
     std::vector<std::uint8_t> bytes;
     while (bytes.size() < 2 * step) {

@@ -31,10 +31,12 @@ constexpr SensorSize kSize{10, 9};
 constexpr std::uint64_t kSchedules = 300;
 
 PixelFormat anyFormat(Random& random) {
-  constexpr std::array<PixelFormat, 4> kFormats{PixelFormat::kMono8, PixelFormat::kBayer8,
-                                                PixelFormat::kMono16, PixelFormat::kColor8};
+  constexpr std::array<PixelFormat, 8> kFormats{
+      PixelFormat::kMono8,       PixelFormat::kBayer8,      PixelFormat::kMono16,
+      PixelFormat::kColor8,      PixelFormat::kBayer16,     PixelFormat::kColor16,
+      PixelFormat::kColorAlpha8, PixelFormat::kColorAlpha16};
   return chance(random, 60) ? PixelFormat::kMono8
-                            : kFormats[static_cast<std::size_t>(uniform(random, 0, 3))];
+                            : kFormats[static_cast<std::size_t>(uniform(random, 0, 7))];
 }
 
 DeblurParameters anyParameters(Random& random) {

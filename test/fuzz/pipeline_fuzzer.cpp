@@ -27,8 +27,10 @@ constexpr std::int64_t kLastStamp_ns = UINT32_MAX * fast_edi::kNanosecondsPerSec
 constexpr int kMaxCalls = 300;
 
 constexpr std::array<SensorSize, 6> kSizes{{{8, 6}, {6, 8}, {1, 1}, {10, 9}, {3, 17}, {0, 5}}};
-constexpr std::array<PixelFormat, 4> kFormats{PixelFormat::kMono8, PixelFormat::kBayer8,
-                                              PixelFormat::kMono16, PixelFormat::kColor8};
+constexpr std::array<PixelFormat, 8> kFormats{
+    PixelFormat::kMono8,       PixelFormat::kBayer8,      PixelFormat::kMono16,
+    PixelFormat::kColor8,      PixelFormat::kBayer16,     PixelFormat::kColor16,
+    PixelFormat::kColorAlpha8, PixelFormat::kColorAlpha16};
 
 DeblurParameters anyParameters(FuzzedDataProvider& input) {
   DeblurParameters parameters;
@@ -43,8 +45,9 @@ DeblurParameters anyParameters(FuzzedDataProvider& input) {
   parameters.stamp_reference = input.ConsumeBool() ? parameters.reference : instant();
   parameters.exposure_source =
       input.ConsumeBool() ? fast_edi::ExposureSource::kTopic : fast_edi::ExposureSource::kParameter;
+  constexpr std::int64_t kUs = fast_edi::kNanosecondsPerMicrosecond;
   parameters.exposure_time_ns =
-      input.ConsumeIntegralInRange<std::int64_t>(0, fast_edi::kMaxExposure_ns);
+      kUs * input.ConsumeIntegralInRange<std::int64_t>(0, fast_edi::kMaxExposure_ns / kUs);
   if (input.ConsumeBool()) {
     parameters.time_offset_ns = input.ConsumeIntegralInRange<std::int64_t>(
         -fast_edi::kMaxTimeOffset_ns, fast_edi::kMaxTimeOffset_ns);

@@ -7,13 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace fast_edi {
+#include "fast_edi/core/parameter_ranges.hpp"
 
-/// Lowest and highest number that is accepted; the lowest itself may be excluded.
-struct NumberLimits {
-  double lowest = 0.0;
-  double highest = 0.0;
-};
+namespace fast_edi {
 
 /// One key of a configuration.
 struct ParameterDescription {
@@ -23,7 +19,7 @@ struct ParameterDescription {
   std::string range;          ///< what is accepted; empty when anything of the type is
   std::string default_value;  ///< taken from the code's own defaults
   std::string doc;
-  std::optional<NumberLimits> limits = {};  ///< of numbers and integers
+  std::optional<NumberRange> limits = {};  ///< of numbers and integers
   /// Can be changed while frames are deblurred; else a new value takes a new start.
   bool live = false;
 };

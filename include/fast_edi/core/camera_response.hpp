@@ -59,9 +59,9 @@ class CameraResponse {
   /// Fractional 8-bit DN for an exposure, clamped to [0, 255]: the inverse of exposure().
   double digitalNumber(double exposure) const;
 
-  /// Writes crf(gain * crf^-1(in)) for every pixel and channel. Memory padding behind the rows of
-  /// \p out is left alone; \p out may be \p in.
-  /// \param gain width x height factors, row-major, each finite and > 0 (a value that is not gives
+  /// Writes crf(gain * crf^-1(in)) for every pixel and channel; copies alpha. Memory padding behind
+  /// the rows of \p out is left alone; \p out may be \p in. \param gain width x height factors,
+  /// row-major, each finite and > 0 (a value that is not gives
   ///        some DN, never undefined behaviour)
   /// \pre in and out have the same size and format
   void applyGain(const ImageView& in, const float* gain, const MutableImageView& out) const;
@@ -75,8 +75,10 @@ class CameraResponse {
               std::uint8_t* out) const;
   void apply16(const std::uint8_t* in, const float* gain, std::size_t count,
                std::uint8_t* out) const;
-  void applyColor8(const std::uint8_t* in, const float* gain, std::size_t width,
-                   std::uint8_t* out) const;
+  void applySamples(PixelFormat format, const std::uint8_t* in, const float* gain,
+                    std::size_t count, std::uint8_t* out) const;
+  void applyColor(PixelFormat format, const std::uint8_t* in, const float* gain, std::size_t width,
+                  std::uint8_t* out) const;
 
   double offset_dn_ = 0.0;
   std::shared_ptr<const Tables> tables_;  ///< null when linear; never changes, hence shared

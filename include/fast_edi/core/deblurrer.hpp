@@ -82,14 +82,15 @@ class Deblurrer {
   /// things that have come before matter nevertheless (filter.temporal begins anew):
   /// - What was learned from the recording stays as long as what it was learned under does. It is
   ///   forgotten, and learning starts anew from the values given, when the thresholds, the time
-  ///   offset, weighting, response, the place of exposures (stamp_reference, exposure_source,
-  ///   exposure_time), filter.enabled or what to learn changes.
+  ///   offset, event_mapping, weighting, response, the place of exposures (stamp_reference,
+  ///   exposure_source, exposure_time), filter.enabled or what to learn changes.
   /// - Output stamps go on increasing: a frame that another `reference` would place at or before
   ///   the last output is suppressed.
   /// Frames whose exposure message is awaited stop waiting when exposure_source changes.
   ///
   /// No event is lost, except that new limits (max_buffered_events, max_backward_jump,
-  /// max_forward_jump) empty the lists.
+  /// max_forward_jump) and another event_mapping empty the lists: frames that need events from
+  /// before are passed through.
   /// \throws std::invalid_argument and keeps the old ones when one is out of range
   void setParameters(const DeblurParameters& parameters);
   const DeblurParameters& parameters() const;

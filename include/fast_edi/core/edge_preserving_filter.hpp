@@ -18,14 +18,18 @@ namespace fast_edi {
 class EdgePreservingFilter {
  public:
   static constexpr int kRadius = 2;
+  /// Below it a float does not hold what the weights are computed from; and so narrow a filter
+  /// changes nothing.
+  static constexpr float kMinSigma = 1e-3F;
 
   struct Settings {
-    float range_sigma = 1.0F;    ///< differences well above it are edges [unit of the plane], > 0
-    float spatial_sigma = 1.0F;  ///< [neighbour distances], > 0
+    float range_sigma = 1.0F;    ///< differences well above it are edges [unit of the plane]
+    float spatial_sigma = 1.0F;  ///< [neighbour distances]
     int stride_px = 1;           ///< distance of neighbours: 2 for the colours of a Bayer mosaic
   };
 
-  /// \throws std::invalid_argument unless both sigmas are finite and > 0 and the stride is 1 or 2
+  /// \throws std::invalid_argument unless both sigmas are finite and at least kMinSigma and the
+  ///         stride is 1 or 2
   EdgePreservingFilter(SensorSize size, const Settings& settings);
 
   /// \p in and \p out: width x height floats, row-major; they may be the same.

@@ -21,7 +21,7 @@ struct FilterParameters {
   bool enabled = true;  ///< false: plain EDI
   GainFilter::Settings gain;
   bool frame_noise = true;      ///< take out the frame's own noise, too
-  double frame_noise_dn = 1.5;  ///< its standard deviation [8-bit DN], > 0
+  double frame_noise_dn = 1.5;  ///< its standard deviation [8-bit DN]
   double temporal = 0.0;        ///< weight of the image before; 0 = off, see TemporalFusion
   bool motion = true;           ///< steady images of other instants by that of mid-exposure
 };

@@ -1,6 +1,7 @@
 /// \file
-/// Everything a user can set about deblurring, in the units of the core. Names, units and defaults
-/// of the user-facing keys are in parameters_from_yaml.hpp and cfg/README.md.
+/// Everything a user can set about deblurring, in the units of the core. Names and defaults of the
+/// user-facing keys are in parameters_from_yaml.hpp and cfg/README.md, ranges in
+/// parameter_ranges.hpp.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +10,7 @@
 
 #include "fast_edi/core/camera_response.hpp"
 #include "fast_edi/core/contrast_threshold.hpp"
+#include "fast_edi/core/event_mapping.hpp"
 #include "fast_edi/core/latent_image.hpp"
 #include "fast_edi/core/latent_instants.hpp"
 #include "fast_edi/core/types.hpp"
@@ -19,7 +21,7 @@ namespace fast_edi {
 enum class ExposureSource { kTopic, kParameter };
 
 struct DeblurParameters {
-  ContrastThresholds thresholds;  ///< natural log, both > 0
+  ContrastThresholds thresholds;  ///< natural log
   Weighting weighting = Weighting::kTime;
   ExposureInstant reference = ExposureInstant::kMid;        ///< instant the latent image shows
   ExposureInstant stamp_reference = ExposureInstant::kMid;  ///< instant the input stamp means
@@ -27,6 +29,7 @@ struct DeblurParameters {
   std::int64_t exposure_time_ns = 0;  ///< 0 = not known
   std::int64_t time_offset_ns = 0;    ///< event time = frame time + offset
   std::int64_t close_timeout_ns = 100 * kNanosecondsPerMillisecond;
+  EventMapping event_mapping;  ///< of the events to the frames' pixels and polarity
   std::size_t max_buffered_events = 13'000'000;
   std::int64_t max_backward_jump_ns = 500 * kNanosecondsPerMillisecond;
   std::int64_t max_forward_jump_ns = 10'000 * kNanosecondsPerMillisecond;
@@ -39,11 +42,12 @@ struct DeblurParameters {
 };
 
 constexpr std::int64_t kMaxExposure_ns = kNanosecondsPerSecond;
-/// Stamps are 32-bit seconds; with these limits no sum of stamp, offset and jump limit overflows.
+/// Stamps are 32-bit seconds; with this limit no sum of stamp, offset and jump limit overflows.
 constexpr std::int64_t kMaxTimeOffset_ns = 3'000'000'000 * kNanosecondsPerSecond;
-constexpr std::int64_t kMaxTimeLimit_ns = 1'000'000'000 * kNanosecondsPerSecond;
 
-/// \throws std::invalid_argument naming the parameter, its value and what was expected
+// Both against parameter_ranges.hpp. They throw std::invalid_argument naming the parameter, its
+// value and what was expected.
+void validate(const ContrastThresholds& thresholds);
 void validate(const DeblurParameters& parameters);
 
 }  // namespace fast_edi
