@@ -194,6 +194,19 @@ std::vector<ConfigKey> filterKeys() {
           "blend each deblurred frame with the previous one, updated by the events in between; "
           "weight of the previous one, 0 = off",
           [](double value, ParameterDraft& draft) { draft.loaded.deblur.filter.temporal = value; }),
+      numberKey(limits::kLevelRamp,
+                numberText(static_cast<double>(DeblurParameters{}.level.ramp_ns) /
+                           static_cast<double>(kNanosecondsPerMillisecond)),
+                "longest ramp of a pixel's log intensity before an event; shorter if the previous "
+                "event is more recent; 0 = no ramp, a jump at the event",
+                [](double value, ParameterDraft& draft) {
+                  draft.loaded.deblur.level.ramp_ns =
+                      toNanoseconds(value, kNanosecondsPerMillisecond);
+                }),
+      numberKey(
+          limits::kLevelRampFraction, numberText(DeblurParameters{}.level.fraction),
+          "fraction of the event's step covered by that ramp; the rest is a jump at the event",
+          [](double value, ParameterDraft& draft) { draft.loaded.deblur.level.fraction = value; }),
       boolKey(
           {"refine_contrast", "", boolText(DeblurParameters{}.refine_contrast),
            "learn the contrast thresholds from consecutive frames, within 30 % of the given ones"},

@@ -42,6 +42,7 @@ bool learnAlike(const DeblurParameters& a, const DeblurParameters& b) {
          a.time_offset_ns == b.time_offset_ns && a.event_mapping == b.event_mapping &&
          a.stamp_reference == b.stamp_reference && a.exposure_source == b.exposure_source &&
          a.exposure_time_ns == b.exposure_time_ns && a.filter.enabled == b.filter.enabled &&
+         a.level == b.level &&
          a.refine_contrast == b.refine_contrast && a.refine_delay == b.refine_delay;
 }
 
@@ -296,7 +297,8 @@ void Deblurrer::Impl::setParameters(const DeblurParameters& parameters) {
       settle(frame);
     }
   }
-  if (integral_ && integral_->weighting() != parameters_.weighting) {
+  if (integral_ && (integral_->weighting() != parameters_.weighting ||
+                    integral_->level() != levelModel(parameters_))) {
     integral_.reset();
     expectation_.reset();
   }
@@ -495,7 +497,9 @@ void Deblurrer::Impl::closeFront(const FrameVerdict& verdict) {
 void Deblurrer::Impl::forgetBefore(std::int64_t t_ns) {
   // A stamp far ahead of all events is no reason to throw them away.
   if (events_.isPast(t_ns)) {
-    events_.discardBefore(calibration_ ? std::min(t_ns, calibration_->neededFrom()) : t_ns);
+    const std::int64_t needed_ns = calibration_ ? std::min(t_ns, calibration_->neededFrom()) : t_ns;
+    // Ramps of an exposure's first events begin before it, should they be asked for from now on.
+    events_.discardBefore(needed_ns - kLongestRamp_ns);
   }
 }
 
@@ -506,9 +510,11 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
       window.start_ns + (exposure.at(parameters_.reference) - exposure.start_ns);
   const CloseReport report = integral_->close(*events_.lists(), window, reference_ns, gain_.data());
   expectation_.reset();
+  const LevelInstant reference{reference_ns, window.end_ns};
+  const LatentGains::Model model{parameters_.thresholds, levelModel(parameters_)};
   const bool wants_video = parameters_.latent.isOn() && sink_.wantsLatentImages();
   if (wants_video) {
-    video_.take(output, output_epoch_, gain_, reference_ns, parameters_);
+    video_.take(output, output_epoch_, gain_, *events_.lists(), reference, parameters_);
   } else {
     video_.breakOff();
   }
@@ -518,7 +524,7 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
   }
   const bool steadies = parameters_.filter.enabled && parameters_.filter.motion;
   if (steadies && parameters_.reference != ExposureInstant::kMid) {
-    middle_.take(gain_, reference_ns, parameters_.thresholds);
+    middle_.take(gain_, *events_.lists(), reference, model);
   }
   const MutableImageView out = sink_.begin(output.input);
   if (out.data != nullptr) {
@@ -531,8 +537,8 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
     }
   }
   if (parameters_.filter.enabled && parameters_.filter.temporal > 0.0) {
-    fusion_.apply({reference_ns, window.length(), output_epoch_}, events_, parameters_.thresholds,
-                  parameters_.response, parameters_.filter.temporal, out);
+    fusion_.apply({reference, window.length(), output_epoch_}, events_, model, parameters_.response,
+                  parameters_.filter.temporal, out);
   }
 
   ++counters_.frames_deblurred;
@@ -561,8 +567,9 @@ ImageView Deblurrer::Impl::steadied(const OutputFrame& output, const ExposureInt
   if (parameters_.reference == ExposureInstant::kMid) {
     return {image.data, image.size, image.step, image.format};
   }
-  const ImageView middle = middle_.show(output.input.image, *events_.lists(),
-                                        window.at(ExposureInstant::kMid), parameters_.response);
+  const ImageView middle =
+      middle_.show(output.input.image, *events_.lists(),
+                   {window.at(ExposureInstant::kMid), window.end_ns}, parameters_.response);
   compensation_.setReference(middle);
   compensation_.apply(image);
   return middle;
@@ -597,11 +604,12 @@ bool Deblurrer::Impl::prepareIntegral(bool may_allocate) {
     integral_.reset();  // before the new one, so that both are never held at once
     integral_size_ = events_.lists()->size();
     integral_ = std::make_unique<DoubleIntegral>(integral_size_, parameters_.thresholds,
-                                                 parameters_.weighting);
+                                                 parameters_.weighting, levelModel(parameters_));
     gain_.resize(integral_size_.pixelCount());
     expectation_.reset();
     resetCalibration();
   }
+  events_.keepIntervals(!integral_->level().isStaircase());
   if (integral_generation_ != events_.generation()) {
     integral_->forget();
     integral_generation_ = events_.generation();
@@ -653,8 +661,10 @@ bool Deblurrer::Impl::calibrates() const {
 void Deblurrer::Impl::calibrate(const OutputFrame& output, const ExposureInterval& window,
                                 std::int64_t reference_ns) {
   if (!calibration_) {
-    const OnlineCalibration::Settings settings{parameters_.refine_contrast,
-                                               parameters_.refine_delay};
+    OnlineCalibration::Settings settings;
+    settings.contrast = parameters_.refine_contrast;
+    settings.delay = parameters_.refine_delay;
+    settings.level = levelModel(parameters_);
     calibration_.emplace(integral_size_, requested_.thresholds, settings);
   }
   if (!events_.covers({std::min(window.start_ns, calibration_->neededFrom()), window.end_ns})) {

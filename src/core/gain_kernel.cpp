@@ -13,9 +13,6 @@ namespace {
 
 constexpr PixelSums kNoEvent{0.0, 1.0};
 
-/// Stands for a gain that cannot be computed; no other gain is below kMinGain.
-constexpr float kOutOfRange = 0.0f;
-
 double integralOf(const PixelSums& pixel, const IntervalClock& clock) {
   return pixel.sum + pixel.value * clock.end - clock.start;
 }
@@ -90,8 +87,8 @@ class TwoPixelGain {
 
 }  // namespace
 
-std::size_t takeGains(const IntervalSums& before, const IntervalSums& after, std::size_t pixels,
-                      float* gain) {
+void takeGains(const IntervalSums& before, const IntervalSums& after, std::size_t pixels,
+               float* gain) {
   std::size_t i = 0;
 #if defined(__SSE2__)
   const TwoPixelGain two(before.clock, after.clock);
@@ -107,6 +104,9 @@ std::size_t takeGains(const IntervalSums& before, const IntervalSums& after, std
     before.sums[i] = kNoEvent;
     after.sums[i] = kNoEvent;
   }
+}
+
+std::size_t replaceOutOfRange(std::size_t pixels, float* gain) {
   const auto out_of_range = static_cast<std::size_t>(std::count(gain, gain + pixels, kOutOfRange));
   if (out_of_range > 0) {
     std::replace(gain, gain + pixels, kOutOfRange, 1.0f);

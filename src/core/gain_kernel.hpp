@@ -8,6 +8,9 @@
 
 namespace fast_edi {
 
+/// Stands for a gain that cannot be computed; no other gain is below DoubleIntegral::kMinGain.
+constexpr float kOutOfRange = 0.0F;
+
 /// Clocks of an interval's ends, counted from the base instant of its sums.
 struct IntervalClock {
   double start = 0.0;
@@ -28,10 +31,13 @@ struct IntervalSums {
 ///
 ///     gain = 1 / E(f) = T v(f) / (A + v(f) B),   T = length(A) + length(B)
 ///
-/// kept within [DoubleIntegral::kMinGain, kMaxGain]; 1 where the denominator is not a positive
-/// number or the ratio not a number. Resets all sums to those of no event in the same sweep.
-/// \return the number of pixels that got 1 for the latter reason
-std::size_t takeGains(const IntervalSums& before, const IntervalSums& after, std::size_t pixels,
-                      float* gain);
+/// kept within [DoubleIntegral::kMinGain, kMaxGain]; kOutOfRange where the denominator is not a
+/// positive number or the ratio not a number. Resets all sums to those of no event in the same
+/// sweep.
+void takeGains(const IntervalSums& before, const IntervalSums& after, std::size_t pixels,
+               float* gain);
+
+/// Replaces each kOutOfRange by 1. \return how many there were
+std::size_t replaceOutOfRange(std::size_t pixels, float* gain);
 
 }  // namespace fast_edi

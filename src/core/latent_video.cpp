@@ -7,9 +7,10 @@
 #include "fast_edi/core/stamp_limits.hpp"
 
 namespace fast_edi {
+
 void LatentVideo::take(const OutputFrame& output, std::uint64_t epoch,
-                       const std::vector<float>& gain, std::int64_t reference_ns,
-                       const DeblurParameters& parameters) {
+                       const std::vector<float>& gain, const PixelEventLists& lists,
+                       const LevelInstant& reference, const DeblurParameters& parameters) {
   std::swap(last_, current_);  // rather than move: both keep their memory
   has_last_ = has_current_ && last_.epoch == epoch;
   if (!has_last_) {
@@ -24,7 +25,8 @@ void LatentVideo::take(const OutputFrame& output, std::uint64_t epoch,
   current_.offset_ns = parameters.time_offset_ns;
   current_.epoch = epoch;
   current_.middle.clear();
-  current_.gains.start(gain.data(), gain.size(), reference_ns, parameters.thresholds);
+  current_.gains.start(gain.data(), lists, reference,
+                       {parameters.thresholds, levelModel(parameters)});
   has_current_ = true;
   gain_.resize(gain.size());
 }
@@ -75,6 +77,8 @@ std::size_t LatentVideo::bridgeGap(const EventStream& events, const DeblurParame
 std::size_t LatentVideo::show(Source& source, const std::vector<std::int64_t>& instants,
                               const EventStream& events, const DeblurParameters& parameters) {
   std::size_t images = 0;
+  // Whichever frame it is: those up to the end of the later exposure have come.
+  const std::int64_t known_until_ns = current_.exposure.end_ns + current_.offset_ns;
   const bool steadies = !instants.empty() && !source.middle.empty();
   if (steadies) {
     compensation_.setReference(source.middle.view());
@@ -85,7 +89,7 @@ std::size_t LatentVideo::show(Source& source, const std::vector<std::int64_t>& i
     if (shown || !isStamp(t_ns)) {
       continue;
     }
-    source.gains.at(*events.lists(), t_ns + source.offset_ns, gain_.data());
+    source.gains.at(*events.lists(), {t_ns + source.offset_ns, known_until_ns}, gain_.data());
     const MutableImageView out = sink_.beginLatent(source.input);
     latent_image_.write(source.input.image, gain_.data(), parameters.response, out);
     if (steadies) {

@@ -2,15 +2,15 @@
 
 namespace fast_edi {
 
-void MiddleImage::take(const std::vector<float>& gain, std::int64_t reference_ns,
-                       ContrastThresholds thresholds) {
-  gains_.start(gain.data(), gain.size(), reference_ns, thresholds);
+void MiddleImage::take(const std::vector<float>& gain, const PixelEventLists& lists,
+                       const LevelInstant& reference, const LatentGains::Model& model) {
+  gains_.start(gain.data(), lists, reference, model);
   gain_.resize(gain.size());
 }
 
 ImageView MiddleImage::show(const ImageView& blurry, const PixelEventLists& lists,
-                            std::int64_t middle_ns, const CameraResponse& response) {
-  gains_.at(lists, middle_ns, gain_.data());
+                            const LevelInstant& middle, const CameraResponse& response) {
+  gains_.at(lists, middle, gain_.data());
   latent_image_.write(blurry, gain_.data(), response, image_.reshape(blurry.size, blurry.format));
   return image_.view();
 }

@@ -201,6 +201,11 @@ OnlineCalibration::Band OnlineCalibration::gather(const Frame& frame,
   const float per_second_ns = 1.0F / static_cast<float>(second.length());
   const float step[2] = {static_cast<float>(in_force_.thresholds.step(false)),
                          static_cast<float>(in_force_.thresholds.step(true))};
+  const LevelModel& level = settings_.level;
+  const bool has_ramps = !level.isStaircase();
+  const LevelInstant first_reference{previous_reference_ns_, first.end_ns};
+  const LevelInstant second_reference{frame.reference_ns, second.end_ns};
+  const auto mean_lead = static_cast<float>(0.5 * level.fraction);
   const std::uint64_t begin = lists.lowerBound(first.start_ns);
   const std::uint64_t end = lists.lowerBound(second.end_ns);
   const Band band = nextBand(end - begin);
@@ -214,20 +219,24 @@ OnlineCalibration::Band OnlineCalibration::gather(const Frame& frame,
         continue;
       }
       const std::int64_t t_ns = span.base_ns + static_cast<std::int64_t>(span.data[i].dt_ns);
+      const std::uint16_t ticks = has_ramps ? span.intervals[i] : std::uint16_t{0};
       const std::uint32_t on = span.data[i].code & 1u;
       PixelEvidence& pixel = evidence_[in_band];
       float weight = 1.0F;
-      if (t_ns < first.end_ns) {
-        weight = static_cast<float>(t_ns - first.start_ns) * per_first_ns;
+      const std::int64_t mean_ns =
+          t_ns - static_cast<std::int64_t>(mean_lead * static_cast<float>(level.rampBefore(ticks)));
+      if (mean_ns < first.end_ns) {
+        weight = std::max(0.0F, static_cast<float>(mean_ns - first.start_ns) * per_first_ns);
         pixel.slope -= step[on] * per_first_ns * kNsPerMs;
-      } else if (t_ns >= second.start_ns) {
-        weight = static_cast<float>(second.end_ns - t_ns) * per_second_ns;
+      } else if (mean_ns >= second.start_ns) {
+        weight = static_cast<float>(second.end_ns - mean_ns) * per_second_ns;
         pixel.slope += step[on] * per_second_ns * kNsPerMs;
       }
       (on != 0 ? pixel.on : pixel.off) += weight;
       pixel.count += 1.0F;
-      if (t_ns >= previous_reference_ns_ && t_ns < frame.reference_ns) {
-        pixel.level += step[on];
+      if (t_ns >= previous_reference_ns_) {
+        pixel.level += step[on] * static_cast<float>(level.reached(t_ns, ticks, second_reference) -
+                                                     level.reached(t_ns, ticks, first_reference));
       }
     }
     sequence += span.count;

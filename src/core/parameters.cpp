@@ -9,6 +9,11 @@ void validate(const ContrastThresholds& thresholds) {
   requireWithin(limits::kContrastOff, thresholds.off);
 }
 
+LevelModel levelModel(const DeblurParameters& parameters) {
+  const bool has_ramps = parameters.filter.enabled && parameters.weighting == Weighting::kTime;
+  return has_ramps ? parameters.level : LevelModel{};
+}
+
 void validate(const DeblurParameters& parameters) {
   constexpr std::int64_t kUs = kNanosecondsPerMicrosecond;
   constexpr std::int64_t kMs = kNanosecondsPerMillisecond;
@@ -19,6 +24,8 @@ void validate(const DeblurParameters& parameters) {
   requireWithin(limits::kBackwardJump, parameters.max_backward_jump_ns, kMs);
   requireWithin(limits::kForwardJump, parameters.max_forward_jump_ns, kMs);
   requireWithin(limits::kBufferedEvents, static_cast<double>(parameters.max_buffered_events));
+  requireWithin(limits::kLevelRamp, parameters.level.ramp_ns, kMs);
+  requireWithin(limits::kLevelRampFraction, parameters.level.fraction);
   validate(parameters.latent);
   validate(parameters.filter);
 }

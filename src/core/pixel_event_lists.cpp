@@ -34,6 +34,7 @@ struct PixelEventLists::Chunk {
   std::int64_t base_ns;
   std::uint64_t first_sequence;
   std::size_t count;
+  std::unique_ptr<std::uint16_t[]> intervals;  ///< of the events, once they were kept
   PackedEvent events[kChunkEvents];
 
   std::int64_t time(std::size_t i) const { return base_ns + events[i].dt_ns; }
@@ -58,11 +59,42 @@ void PixelEventLists::reset(SensorSize size, Limits limits) {
   }
   flush();
   block_events_ = kBlockEvents;
+  keepIntervals(false);
   size_ = size;
   limits_ = limits;
   max_chunks_ = (limits.max_events + kChunkEvents - 1) / kChunkEvents + 1;
   chunks_.reserve(max_chunks_);
   free_chunks_.reserve(max_chunks_);
+}
+
+void PixelEventLists::keepIntervals(bool keep) {
+  if (keep == keeps_intervals_) {
+    return;
+  }
+  keeps_intervals_ = keep;
+  if (!keep) {
+    intervals_.release();
+    for (auto* chunks : {&chunks_, &free_chunks_}) {
+      for (const std::unique_ptr<Chunk>& chunk : *chunks) {
+        chunk->intervals.reset();
+      }
+    }
+    return;
+  }
+  intervals_.reset(size_.pixelCount());
+  for (const std::unique_ptr<Chunk>& chunk : chunks_) {
+    measureIntervals(*chunk, 0, chunk->count);
+  }
+}
+
+void PixelEventLists::measureIntervals(Chunk& chunk, std::size_t first, std::size_t count) {
+  if (!keeps_intervals_) {
+    return;
+  }
+  if (!chunk.intervals) {
+    chunk.intervals.reset(new std::uint16_t[kChunkEvents]);
+  }
+  intervals_.measure(chunk.events + first, count, chunk.base_ns, chunk.intervals.get() + first);
 }
 
 AppendResult PixelEventLists::append(const WireEvents& events) {
@@ -130,6 +162,7 @@ std::size_t PixelEventLists::appendRegular(const WireEvents& events, AppendResul
     return 0;
   }
   block_events_ = std::min(2 * block_events_, kBlockEvents);
+  measureIntervals(chunk, chunk.count, count);
   newest_ns_ = block_newest_ns;
   chunk.count += count;
   end_sequence_ += count;
@@ -160,8 +193,10 @@ AppendStop PixelEventLists::appendOne(const Event& event, AppendResult& result) 
   Chunk& chunk = chunkFor(event.t_ns);
   const std::uint32_t index =
       static_cast<std::uint32_t>(event.y) * static_cast<std::uint32_t>(size_.width) + event.x;
-  chunk.events[chunk.count++] = {static_cast<std::uint32_t>(event.t_ns - chunk.base_ns),
-                                 2 * index + (event.on ? 1u : 0u)};
+  chunk.events[chunk.count] = {static_cast<std::uint32_t>(event.t_ns - chunk.base_ns),
+                               2 * index + (event.on ? 1u : 0u)};
+  measureIntervals(chunk, chunk.count, 1);
+  ++chunk.count;
   ++end_sequence_;
   newest_ns_ = event.t_ns;
   has_newest_ = true;
@@ -245,10 +280,19 @@ void PixelEventLists::flush() {
   begin_sequence_ = end_sequence_;
   complete_from_ns_ = INT64_MIN;
   has_newest_ = false;
+  if (keeps_intervals_) {
+    intervals_.reset(size_.pixelCount());
+  }
 }
 
 std::size_t PixelEventLists::memoryBytes() const {
-  return (chunks_.size() + free_chunks_.size()) * sizeof(Chunk);
+  std::size_t bytes = (chunks_.size() + free_chunks_.size()) * sizeof(Chunk);
+  for (const auto* chunks : {&chunks_, &free_chunks_}) {
+    for (const std::unique_ptr<Chunk>& chunk : *chunks) {
+      bytes += chunk->intervals ? kChunkEvents * sizeof(std::uint16_t) : 0;
+    }
+  }
+  return bytes + intervals_.memoryBytes();
 }
 
 std::uint64_t PixelEventLists::lowerBound(std::int64_t t_ns) const {
@@ -281,6 +325,9 @@ PackedEventSpan PixelEventLists::span(std::uint64_t sequence, std::uint64_t end_
   const Chunk& chunk = *chunks_[chunkIndex(sequence)];
   const std::size_t offset = static_cast<std::size_t>(sequence - chunk.first_sequence);
   result.data = chunk.events + offset;
+  if (keeps_intervals_) {
+    result.intervals = chunk.intervals.get() + offset;
+  }
   result.count = static_cast<std::size_t>(std::min(end_sequence, chunk.endSequence()) - sequence);
   result.base_ns = chunk.base_ns;
   result.first_sequence = sequence;

@@ -112,7 +112,10 @@ void RunningIntegral::fold(const PixelEventLists& lists, std::uint64_t end,
                            const EventFactors& factors, Weighting weighting) {
   while (cursor_ < end) {
     const PackedEventSpan span = lists.span(cursor_, end);
-    if (weighting == Weighting::kTime) {
+    if (factors.most_ticks > 0) {
+      foldRampsByTime(span.data, span.intervals, span.count, span.base_ns - base_ns_, factors,
+                      sums_.data());
+    } else if (weighting == Weighting::kTime) {
       foldByTime(span.data, span.count, span.base_ns - base_ns_, factors, sums_.data());
     } else {
       foldByCounter(span.data, span.count, static_cast<std::int64_t>(cursor_ - base_sequence_),
@@ -145,6 +148,10 @@ void RunningIntegral::prepend(const PixelEventLists& lists, std::uint64_t begin,
       PixelSums& pixel = sums_[event.code >> 1];
       pixel.sum =
           multiplier * pixel.sum + factors.one_minus[event.code & 1u] * static_cast<double>(clock);
+      if (factors.most_ticks > 0) {
+        pixel.sum += factors.excess[event.code & 1u] *
+                     static_cast<double>(std::min(span.intervals[i], factors.most_ticks));
+      }
       pixel.value *= multiplier;
     }
     clean_ = false;

@@ -8,11 +8,14 @@
 ///
 /// so that an event needs one update, without the clock of the one before it and without an exp.
 ///
+/// Ramps (see level_model.hpp) add sum_k v_{k-1} (K_k - 1) r_k. A ramp counts whole, in the
+/// interval that its event lies in; what of it lies before the start is for the caller to settle.
+///
 /// Canonical order. Forward sums start at a base instant, a function of the interval alone: the
 /// first multiple of a quantum that lies a margin after the start. Events between start and base
 /// are prepended in reverse order when the interval is closed,
 ///
-///     sum <- m sum + (1 - m) u,   v_n <- m v_n.
+///     sum <- m sum + (1 - m) u + (K - 1) r,   v_n <- m v_n.
 ///
 /// So an expected interval that was off by microseconds leads to the same operations in the same
 /// order as none at all, unless a multiple of the quantum lies between the two starts; then the

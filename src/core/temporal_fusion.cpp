@@ -19,15 +19,15 @@ void blendPlanes(const float* __restrict carried, std::size_t count, float weigh
 }  // namespace
 
 bool TemporalFusion::apply(const Frame& frame, const EventStream& events,
-                           ContrastThresholds thresholds, const CameraResponse& response,
+                           const LatentGains::Model& model, const CameraResponse& response,
                            double weight, const MutableImageView& image) {
   const bool bridged = isBridged(frame, events, image);
   if (bridged) {
     const double exposures =
         static_cast<double>(frame.exposure_ns) / static_cast<double>(last_frame_.exposure_ns);
     gain_.assign(image.size.pixelCount(), static_cast<float>(exposures));
-    change_.start(gain_.data(), gain_.size(), last_frame_.reference_ns, thresholds);
-    change_.at(*events.lists(), frame.reference_ns, gain_.data());
+    change_.start(gain_.data(), *events.lists(), last_frame_.reference, model);
+    change_.at(*events.lists(), frame.reference, gain_.data());
     response.applyGain(last_.view(), gain_.data(), carried_.reshape(image.size, image.format));
     blend(static_cast<float>(weight), image);
   }
@@ -44,7 +44,7 @@ bool TemporalFusion::isBridged(const Frame& frame, const EventStream& events,
     return false;
   }
   const ImageView last = last_.view();
-  const ExposureInterval between{last_frame_.reference_ns, frame.reference_ns};
+  const ExposureInterval between{last_frame_.reference.t_ns, frame.reference.t_ns};
   return last.size == image.size && last.format == image.format && between.length() > 0 &&
          between.length() <= kMaxGap_ns && events.covers(between) &&
          events.hasReached(between.end_ns);

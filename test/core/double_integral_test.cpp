@@ -38,7 +38,38 @@ constexpr std::int64_t kMillisecond = kNanosecondsPerMillisecond;
 constexpr std::int64_t kStart = 1'600'000'000 * kNanosecondsPerSecond;
 constexpr ContrastThresholds kUnequal{0.31, 0.24};
 constexpr ContrastThresholds kEqual{0.3, 0.3};
-constexpr Weighting kWeightings[] = {Weighting::kTime, Weighting::kCounter};
+
+/// How events count and what the level does between them.
+struct Model {
+  Weighting weighting;
+  LevelModel level;
+};
+constexpr Model kTime{Weighting::kTime, {}};
+constexpr Model kCounter{Weighting::kCounter, {}};
+constexpr Model kRamps{Weighting::kTime, {4 * kMillisecond, 0.85}};
+constexpr Model kModels[] = {kTime, kCounter, kRamps};
+
+std::string toString(const Model& model) {
+  return std::string(model.weighting == Weighting::kTime ? "time" : "counter") +
+         (model.level.isStaircase() ? "" : "_ramps");
+}
+
+std::string modelName(const ::testing::TestParamInfo<Model>& model) {
+  return toString(model.param);
+}
+
+class Lists : public PixelEventLists {
+ public:
+  Lists(SensorSize size, Limits limits) : PixelEventLists(size, limits) { keepIntervals(true); }
+};
+
+std::vector<double> referenceOf(const Model& model, SensorSize size,
+                                const std::vector<Event>& events,
+                                const ContrastThresholds& thresholds,
+                                const ExposureInterval& window, std::int64_t reference_ns) {
+  return referenceDoubleIntegral(size, events, thresholds, model.weighting, window, reference_ns,
+                                 model.level);
+}
 
 /// 30 ms of a stream that lasts 40 ms; not at round numbers.
 constexpr ExposureInterval kWindow{kStart + 5'123'000, kStart + 35'123'000};
@@ -63,8 +94,8 @@ Closed closeWith(DoubleIntegral& integral, const PixelEventLists& lists,
 
 /// Gains of a window that nobody announced, by an integral without a past.
 Closed surprise(const PixelEventLists& lists, const ContrastThresholds& thresholds,
-                Weighting weighting, const ExposureInterval& window, std::int64_t reference_ns) {
-  DoubleIntegral integral(lists.size(), thresholds, weighting);
+                const Model& model, const ExposureInterval& window, std::int64_t reference_ns) {
+  DoubleIntegral integral(lists.size(), thresholds, model.weighting, model.level);
   return closeWith(integral, lists, window, reference_ns);
 }
 
@@ -87,30 +118,28 @@ struct Scene {
   ContrastThresholds thresholds;
 };
 
-class DoubleIntegralAccuracy
-    : public ::testing::TestWithParam<std::tuple<Scene, Weighting, double>> {};
+class DoubleIntegralAccuracy : public ::testing::TestWithParam<std::tuple<Scene, Model, double>> {};
 
 TEST_P(DoubleIntegralAccuracy, IsWithinTheToleranceOfTheReference) {
-  const auto& [scene, weighting, reference_share] = GetParam();
+  const auto& [scene, model, reference_share] = GetParam();
   const std::vector<Event> events =
       makeEvents(scene.scene, {scene.size, scene.events, kStart, 40 * kMillisecond, 21});
-  PixelEventLists lists(scene.size, {});
+  Lists lists(scene.size, {});
   fill(lists, events);
   const std::int64_t reference_ns =
       kWindow.start_ns +
       static_cast<std::int64_t>(reference_share * static_cast<double>(kWindow.length()));
 
-  const Closed closed = surprise(lists, scene.thresholds, weighting, kWindow, reference_ns);
+  const Closed closed = surprise(lists, scene.thresholds, model, kWindow, reference_ns);
   EXPECT_EQ(closed.report.out_of_range, 0u);
-  expectReciprocals(closed.gain, referenceDoubleIntegral(scene.size, events, scene.thresholds,
-                                                         weighting, kWindow, reference_ns));
+  expectReciprocals(
+      closed.gain, referenceOf(model, scene.size, events, scene.thresholds, kWindow, reference_ns));
 }
 
 std::string accuracyName(
     const ::testing::TestParamInfo<DoubleIntegralAccuracy::ParamType>& parameters) {
-  const auto& [scene, weighting, reference_share] = parameters.param;
-  return std::string(toString(scene.scene)) +
-         (weighting == Weighting::kTime ? "_time" : "_counter") + "_reference_at_" +
+  const auto& [scene, model, reference_share] = parameters.param;
+  return std::string(toString(scene.scene)) + "_" + toString(model) + "_reference_at_" +
          std::to_string(static_cast<int>(100 * reference_share));
 }
 
@@ -126,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
                           Scene{EventScene::kRandomWalks, kSmall, 300'000, kUnequal},
                           Scene{EventScene::kHotPixel, kOnePixel, 1'400'000, kEqual},
                           Scene{EventScene::kHotWalk, kOnePixel, 1'400'000, {0.02, 0.02}}),
-        ::testing::ValuesIn(kWeightings), ::testing::Values(0.0, 0.37, 0.5, 1.0)),
+        ::testing::ValuesIn(kModels), ::testing::Values(0.0, 0.37, 0.5, 1.0)),
     accuracyName);
 
 TEST(DoubleIntegral, WeighsCountersLikeVanillaEdiAndThePaper) {
@@ -135,7 +164,7 @@ TEST(DoubleIntegral, WeighsCountersLikeVanillaEdiAndThePaper) {
     SCOPED_TRACE(toString(scene));
     const std::vector<Event> events =
         makeEvents(scene, {size, 30'000, kStart, 40 * kMillisecond, 22});
-    PixelEventLists lists(size, {});
+    Lists lists(size, {});
     fill(lists, events);
     testing::VanillaEdi vanilla(size, kEqual);
     testing::PaperLists paper(size, kEqual, Weighting::kCounter);
@@ -145,7 +174,7 @@ TEST(DoubleIntegral, WeighsCountersLikeVanillaEdiAndThePaper) {
       vanilla.add(event);
       paper.add(event);
     }
-    const Closed closed = surprise(lists, kEqual, Weighting::kCounter, kWindow, reference_ns);
+    const Closed closed = surprise(lists, kEqual, kCounter, kWindow, reference_ns);
     expectReciprocals(closed.gain, vanilla.doubleIntegral());
     expectReciprocals(closed.gain, paper.close(kWindow, reference_ns));
   }
@@ -153,8 +182,8 @@ TEST(DoubleIntegral, WeighsCountersLikeVanillaEdiAndThePaper) {
 
 // Borders.
 
-class DoubleIntegralBorders : public ::testing::TestWithParam<Weighting> {};
-INSTANTIATE_TEST_SUITE_P(BothWeightings, DoubleIntegralBorders, ::testing::ValuesIn(kWeightings));
+class DoubleIntegralBorders : public ::testing::TestWithParam<Model> {};
+INSTANTIATE_TEST_SUITE_P(Models, DoubleIntegralBorders, ::testing::ValuesIn(kModels), modelName);
 
 TEST_P(DoubleIntegralBorders, AreHalfOpen) {
   const SensorSize size{4, 1};
@@ -165,7 +194,7 @@ TEST_P(DoubleIntegralBorders, AreHalfOpen) {
       {3, 0, mid_ns - 1, true},           {3, 0, mid_ns, true},
       {3, 0, mid_ns + 1, false},          {2, 0, kWindow.end_ns - 1, true},
       {1, 0, kWindow.end_ns, true}};
-  PixelEventLists lists(size, {});
+  Lists lists(size, {});
   fill(lists, events);
   for (const std::int64_t reference_ns :
        {kWindow.start_ns, kWindow.start_ns + 1, mid_ns - 1, mid_ns, mid_ns + 1, mid_ns + 2,
@@ -174,8 +203,8 @@ TEST_P(DoubleIntegralBorders, AreHalfOpen) {
     const Closed closed = surprise(lists, kUnequal, GetParam(), kWindow, reference_ns);
     EXPECT_EQ(closed.report.events, 5u);
     EXPECT_EQ(closed.gain[1], 1.0f);
-    expectReciprocals(closed.gain, referenceDoubleIntegral(size, events, kUnequal, GetParam(),
-                                                           kWindow, reference_ns));
+    expectReciprocals(closed.gain,
+                      referenceOf(GetParam(), size, events, kUnequal, kWindow, reference_ns));
   }
 }
 
@@ -196,18 +225,17 @@ TEST_P(DoubleIntegralBorders, HoldForEventsAroundThem) {
                         static_cast<std::uint16_t>(random() % 3), t_ns, random() % 2 == 0});
     }
   }
-  PixelEventLists lists(size, {});
+  Lists lists(size, {});
   fill(lists, events);
   for (const std::int64_t f_ns : {kWindow.start_ns, reference_ns, kWindow.end_ns}) {
     const Closed closed = surprise(lists, kUnequal, GetParam(), kWindow, f_ns);
-    expectReciprocals(closed.gain,
-                      referenceDoubleIntegral(size, events, kUnequal, GetParam(), kWindow, f_ns));
+    expectReciprocals(closed.gain, referenceOf(GetParam(), size, events, kUnequal, kWindow, f_ns));
   }
 }
 
 TEST_P(DoubleIntegralBorders, LeaveStillPixelsExactlyAlone) {
   const SensorSize size{20, 10};
-  PixelEventLists lists(size, {});
+  Lists lists(size, {});
   const std::vector<float> ones(size.pixelCount(), 1.0f);
   // Nothing at all; nothing inside; events in one pixel only.
   EXPECT_EQ(surprise(lists, kUnequal, GetParam(), kWindow, kWindow.start_ns).gain, ones);
@@ -216,7 +244,7 @@ TEST_P(DoubleIntegralBorders, LeaveStillPixelsExactlyAlone) {
   EXPECT_EQ(outside.gain, ones);
   EXPECT_EQ(outside.report.events, 0u);
 
-  PixelEventLists busy(size, {});
+  Lists busy(size, {});
   std::vector<Event> events =
       makeEvents(EventScene::kUniform, {{1, 1}, 5000, kStart, 40 * kMillisecond, 3});
   fill(busy, events);
@@ -234,12 +262,11 @@ TEST_P(DoubleIntegralBorders, HoldEventsThatAllHaveOneTime) {
     std::vector<Event> events =
         makeEvents(EventScene::kUniform, {size, 2000, kStart, 40 * kMillisecond, 5});
     for (Event& event : events) event.t_ns = t_ns;
-    PixelEventLists lists(size, {});
+    Lists lists(size, {});
     fill(lists, events);
     for (const std::int64_t reference_ns : {kWindow.start_ns, t_ns, t_ns + 1, kWindow.end_ns}) {
-      expectReciprocals(
-          surprise(lists, kUnequal, GetParam(), kWindow, reference_ns).gain,
-          referenceDoubleIntegral(size, events, kUnequal, GetParam(), kWindow, reference_ns));
+      expectReciprocals(surprise(lists, kUnequal, GetParam(), kWindow, reference_ns).gain,
+                        referenceOf(GetParam(), size, events, kUnequal, kWindow, reference_ns));
     }
   }
 }
@@ -248,7 +275,7 @@ TEST_P(DoubleIntegralBorders, HoldForWindowsFromNanosecondsToSeconds) {
   const SensorSize size{6, 5};
   const std::vector<Event> events =
       makeEvents(EventScene::kUniform, {size, 20'000, kStart, 3000 * kMillisecond, 6});
-  PixelEventLists lists(size, {});
+  Lists lists(size, {});
   fill(lists, events);
   for (const std::int64_t length_ns :
        {std::int64_t{1}, std::int64_t{999}, 40 * kMicrosecond, 51 * kMicrosecond, kMillisecond,
@@ -257,9 +284,8 @@ TEST_P(DoubleIntegralBorders, HoldForWindowsFromNanosecondsToSeconds) {
     const std::int64_t start_ns = events[77].t_ns;
     const ExposureInterval window{start_ns, start_ns + length_ns};
     const std::int64_t reference_ns = window.at(ExposureInstant::kMid);
-    expectReciprocals(
-        surprise(lists, kUnequal, GetParam(), window, reference_ns).gain,
-        referenceDoubleIntegral(size, events, kUnequal, GetParam(), window, reference_ns));
+    expectReciprocals(surprise(lists, kUnequal, GetParam(), window, reference_ns).gain,
+                      referenceOf(GetParam(), size, events, kUnequal, window, reference_ns));
   }
 }
 
@@ -274,7 +300,7 @@ TEST_P(DoubleIntegralBorders, CountPixelsBeyondTheRangeOfDouble) {
     events.push_back({1, 0, t_ns, i >= kSteps});
   }
   events.push_back({2, 0, kWindow.end_ns - 10 * kMillisecond, true});
-  PixelEventLists lists(size, {});
+  Lists lists(size, {});
   fill(lists, events);
   for (const ExposureInstant reference :
        {ExposureInstant::kStart, ExposureInstant::kMid, ExposureInstant::kEnd}) {
@@ -298,7 +324,7 @@ TEST(DoubleIntegral, RefusesBadThresholds) {
 TEST(DoubleIntegral, TakesOverNewThresholds) {
   const std::vector<Event> events =
       makeEvents(EventScene::kUniform, {kSmall, 50'000, kStart, 40 * kMillisecond, 7});
-  PixelEventLists lists(kSmall, {});
+  Lists lists(kSmall, {});
   fill(lists, events);
   const std::int64_t reference_ns = kWindow.at(ExposureInstant::kMid);
   DoubleIntegral integral(kSmall, kEqual, Weighting::kTime);
@@ -307,12 +333,12 @@ TEST(DoubleIntegral, TakesOverNewThresholds) {
   integral.setThresholds(kUnequal);
   EXPECT_EQ(integral.thresholds(), kUnequal);
   EXPECT_EQ(closeWith(integral, lists, kWindow, reference_ns).gain,
-            surprise(lists, kUnequal, Weighting::kTime, kWindow, reference_ns).gain);
+            surprise(lists, kUnequal, kTime, kWindow, reference_ns).gain);
 }
 
 // However a window was closed, the gains are the same, bit for bit.
 
-class DoubleIntegralPaths : public ::testing::TestWithParam<Weighting> {
+class DoubleIntegralPaths : public ::testing::TestWithParam<Model> {
  protected:
   static constexpr SensorSize kPathSize{64, 48};
   static constexpr std::size_t kEvents = 200'000;
@@ -325,8 +351,8 @@ class DoubleIntegralPaths : public ::testing::TestWithParam<Weighting> {
   Closed followed(const ExposureInterval& expected, std::int64_t expected_reference_ns,
                   const ExposureInterval& window, std::int64_t reference_ns,
                   std::size_t packet = 1000) const {
-    PixelEventLists lists(kPathSize, {});
-    DoubleIntegral integral(kPathSize, kUnequal, GetParam());
+    Lists lists(kPathSize, {});
+    DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
     integral.expect(expected, expected_reference_ns);
     for (WireEvents rest = wireView(wire_); !rest.empty();) {
       const std::size_t count = std::min(packet, rest.count);
@@ -338,7 +364,7 @@ class DoubleIntegralPaths : public ::testing::TestWithParam<Weighting> {
   }
 
   Closed surprised(const ExposureInterval& window, std::int64_t reference_ns) const {
-    PixelEventLists lists(kPathSize, {});
+    Lists lists(kPathSize, {});
     lists.append(wireView(wire_));
     return surprise(lists, kUnequal, GetParam(), window, reference_ns);
   }
@@ -348,7 +374,7 @@ class DoubleIntegralPaths : public ::testing::TestWithParam<Weighting> {
 
 constexpr SensorSize DoubleIntegralPaths::kPathSize;
 
-INSTANTIATE_TEST_SUITE_P(BothWeightings, DoubleIntegralPaths, ::testing::ValuesIn(kWeightings));
+INSTANTIATE_TEST_SUITE_P(Models, DoubleIntegralPaths, ::testing::ValuesIn(kModels), modelName);
 
 TEST_P(DoubleIntegralPaths, AgreeWhenThePredictionIsExact) {
   for (const ExposureInstant instant :
@@ -427,9 +453,9 @@ TEST_P(DoubleIntegralPaths, AgreeWhenThePredictionIsWrong) {
 
 TEST_P(DoubleIntegralPaths, AgreeForLatentImagesOfOneExposure) {
   // Several reference times for one window, after each other on the same integral.
-  PixelEventLists lists(kPathSize, {});
+  Lists lists(kPathSize, {});
   lists.append(wireView(wire_));
-  DoubleIntegral integral(kPathSize, kUnequal, GetParam());
+  DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
   integral.expect(kWindow, kWindow.at(ExposureInstant::kMid));
   integral.follow(lists);
   for (int i = 0; i <= 10; ++i) {
@@ -440,8 +466,8 @@ TEST_P(DoubleIntegralPaths, AgreeForLatentImagesOfOneExposure) {
 }
 
 TEST_P(DoubleIntegralPaths, AgreeAfterAFlush) {
-  PixelEventLists lists(kPathSize, {});
-  DoubleIntegral integral(kPathSize, kUnequal, GetParam());
+  Lists lists(kPathSize, {});
+  DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
   const std::int64_t reference_ns = kWindow.at(ExposureInstant::kMid);
   integral.expect(kWindow, reference_ns);
   lists.append(WireEvents{wire_.data(), kEvents / 2});
@@ -461,8 +487,8 @@ TEST_P(DoubleIntegralPaths, AgreeAfterAnOverflow) {
   // Full long before the window ends: what is left is what counts, however it was followed.
   PixelEventLists::Limits limits;
   limits.max_events = 80'000;
-  PixelEventLists lists(kPathSize, limits);
-  DoubleIntegral integral(kPathSize, kUnequal, GetParam());
+  Lists lists(kPathSize, limits);
+  DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
   const std::int64_t reference_ns = kWindow.at(ExposureInstant::kMid);
   integral.expect(kWindow, reference_ns);
   for (WireEvents rest = wireView(wire_); !rest.empty();) {
@@ -480,8 +506,8 @@ TEST_P(DoubleIntegralPaths, AgreeAfterAnOverflow) {
 TEST_P(DoubleIntegralPaths, AgreeAfterOverflowBetweenFollows) {
   PixelEventLists::Limits limits;
   limits.max_events = 80'000;
-  PixelEventLists lists(kPathSize, limits);
-  DoubleIntegral integral(kPathSize, kUnequal, GetParam());
+  Lists lists(kPathSize, limits);
+  DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
   const std::int64_t reference_ns = kWindow.at(ExposureInstant::kMid);
   integral.expect(kWindow, reference_ns);
   const WireEvents all = wireView(wire_);
@@ -499,10 +525,10 @@ TEST_P(DoubleIntegralPaths, AgreeOverARunOfFrames) {
   constexpr std::int64_t kPeriod = 5 * kMillisecond;
   constexpr std::int64_t kExposure = 3 * kMillisecond;
   std::mt19937 random(9);
-  PixelEventLists all(kPathSize, {});
+  Lists all(kPathSize, {});
   all.append(wireView(wire_));
-  PixelEventLists lists(kPathSize, {});
-  DoubleIntegral integral(kPathSize, kUnequal, GetParam());
+  Lists lists(kPathSize, {});
+  DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
   WireEvents rest = wireView(wire_);
   int followed_count = 0;
   ExposureInterval last{};
@@ -546,8 +572,8 @@ TEST_P(DoubleIntegralPaths, AgreeUnderRandomSchedules) {
       const std::int64_t start_ns = kStart + below(kSpan);
       return ExposureInterval{start_ns, start_ns + 1 + below(kSpan / 2)};
     };
-    PixelEventLists lists(size, {});
-    DoubleIntegral integral(size, kUnequal, GetParam());
+    Lists lists(size, {});
+    DoubleIntegral integral(size, kUnequal, GetParam().weighting, GetParam().level);
     WireEvents rest = wireView(wire);
     ExposureInterval expected = randomWindow();
     for (int step = 0; step < kSteps; ++step) {
@@ -577,8 +603,8 @@ TEST_P(DoubleIntegralPaths, AgreeUnderRandomSchedules) {
           const std::vector<Event> so_far(
               events.begin(),
               events.begin() + static_cast<std::ptrdiff_t>(events.size() - rest.count));
-          expectReciprocals(closed.gain, referenceDoubleIntegral(size, so_far, kUnequal, GetParam(),
-                                                                 window, reference_ns));
+          expectReciprocals(closed.gain,
+                            referenceOf(GetParam(), size, so_far, kUnequal, window, reference_ns));
           ASSERT_FALSE(::testing::Test::HasFatalFailure());
         }
       }
@@ -597,9 +623,9 @@ TEST(DoubleIntegral, NeedsAtMostFortyEightBytesForEachPixel) {
 }
 
 TEST_P(DoubleIntegralPaths, AllocateNothing) {
-  PixelEventLists lists(kPathSize, {});
+  Lists lists(kPathSize, {});
   lists.append(wireView(wire_));
-  DoubleIntegral integral(kPathSize, kUnequal, GetParam());
+  DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
   std::vector<float> gain(kPathSize.pixelCount());
   const std::uint64_t before = allocationCount();
   ASSERT_GT(before, 0u);

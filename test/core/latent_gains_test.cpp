@@ -18,9 +18,16 @@ constexpr std::int64_t kMs = kNanosecondsPerMillisecond;
 constexpr std::int64_t kStart = 1000 * kNanosecondsPerSecond;
 constexpr ExposureInterval kExposure{kStart + 10 * kMs, kStart + 40 * kMs};
 
+struct Model {
+  Weighting weighting;
+  LevelModel level;
+};
+
 /// The integral computed at each instant anew, from the same events.
-class LatentGainsTest : public ::testing::TestWithParam<Weighting> {
+class LatentGainsTest : public ::testing::TestWithParam<Model> {
  protected:
+  LatentGainsTest() { lists_.keepIntervals(true); }
+
   void fill(testing::EventScene scene, std::size_t count) {
     lists_.append(testing::wireView(
         testing::toWire(testing::makeEvents(scene, {kSize, count, kStart, 60 * kMs, 7}))));
@@ -28,7 +35,7 @@ class LatentGainsTest : public ::testing::TestWithParam<Weighting> {
   void append(const Event& event) { lists_.append(event); }
 
   std::vector<float> integrated(std::int64_t reference_ns) {
-    DoubleIntegral integral(kSize, kThresholds, GetParam());
+    DoubleIntegral integral(kSize, kThresholds, GetParam().weighting, GetParam().level);
     std::vector<float> gain(kSize.pixelCount());
     EXPECT_EQ(integral.close(lists_, kExposure, reference_ns, gain.data()).out_of_range, 0u);
     return gain;
@@ -36,12 +43,13 @@ class LatentGainsTest : public ::testing::TestWithParam<Weighting> {
 
   void startAt(std::int64_t reference_ns) {
     const std::vector<float> gain = integrated(reference_ns);
-    gains_.start(gain.data(), gain.size(), reference_ns, kThresholds);
+    gains_.start(gain.data(), lists_, {reference_ns, kExposure.end_ns},
+                 {kThresholds, GetParam().level});
   }
 
-  std::vector<float> carried(std::int64_t t_ns) {
+  std::vector<float> carried(std::int64_t t_ns, std::int64_t known_until_ns = kExposure.end_ns) {
     std::vector<float> gain(kSize.pixelCount());
-    walked_ += gains_.at(lists_, t_ns, gain.data());
+    walked_ += gains_.at(lists_, {t_ns, known_until_ns}, gain.data());
     EXPECT_EQ(gains_.instant(), t_ns);
     return gain;
   }
@@ -102,10 +110,26 @@ TEST_P(LatentGainsTest, GoOnBeyondTheExposure) {
   append({3, 2, kExposure.end_ns + kMs, false});
   startAt(kExposure.at(ExposureInstant::kMid));
   const std::size_t pixel = 2 * 40 + 3;
-  EXPECT_NEAR(carried(kExposure.start_ns - kMs)[pixel], std::exp(-0.3F), 1e-6F);
+  EXPECT_NEAR(carried(kExposure.start_ns - 9 * kMs)[pixel], std::exp(-0.3F), 1e-6F);
   EXPECT_NEAR(carried(kExposure.end_ns)[pixel], 1.0F, 1e-6F);
   EXPECT_NEAR(carried(kExposure.end_ns + 1)[pixel], std::exp(0.3F), 1e-6F);
   EXPECT_NEAR(carried(kExposure.end_ns + 2 * kMs)[pixel], std::exp(0.05F), 1e-6F);
+}
+
+TEST_P(LatentGainsTest, RiseTowardsTheNextEventThatIsKnown) {
+  append({3, 2, kExposure.start_ns - kMs, true});
+  append({3, 2, kExposure.end_ns + 2 * kMs, true});
+  startAt(kExposure.at(ExposureInstant::kMid));
+  const std::size_t pixel = 2 * 40 + 3;
+  EXPECT_NEAR(carried(kExposure.end_ns)[pixel], 1.0F, 1e-6F);
+  const LevelModel& level = GetParam().level;
+  const double rise = level.isStaircase()
+                          ? 0.0
+                          : 0.3 * level.fraction *
+                                (1.0 - 2.0 * static_cast<double>(kMs) /
+                                           static_cast<double>(level.rampBefore(UINT16_MAX)));
+  EXPECT_NEAR(carried(kExposure.end_ns, kExposure.end_ns + 3 * kMs)[pixel], std::exp(rise), 1e-6);
+  EXPECT_NEAR(carried(kExposure.end_ns, kExposure.end_ns + 2 * kMs)[pixel], 1.0, 1e-6);
 }
 
 TEST_P(LatentGainsTest, LeavePixelsWithoutEventsAtExactlyOne) {
@@ -141,10 +165,14 @@ TEST_P(LatentGainsTest, StayWithinTheRangeOfGains) {
   EXPECT_EQ(gain[1], static_cast<float>(DoubleIntegral::kMinGain));
 }
 
-INSTANTIATE_TEST_SUITE_P(Weightings, LatentGainsTest,
-                         ::testing::Values(Weighting::kTime, Weighting::kCounter),
-                         [](const ::testing::TestParamInfo<Weighting>& weighting) {
-                           return weighting.param == Weighting::kTime ? "Time" : "Counter";
+INSTANTIATE_TEST_SUITE_P(Models, LatentGainsTest,
+                         ::testing::Values(Model{Weighting::kTime, {}},
+                                           Model{Weighting::kCounter, {}},
+                                           Model{Weighting::kTime, {4 * kMs, 0.85}}),
+                         [](const ::testing::TestParamInfo<Model>& model) {
+                           return model.param.weighting == Weighting::kCounter ? "Counter"
+                                  : model.param.level.isStaircase()            ? "Time"
+                                                                               : "Ramps";
                          });
 
 }  // namespace

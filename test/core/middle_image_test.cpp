@@ -51,6 +51,7 @@ testing::RecordingSink published(ExposureInstant reference, bool motion, int fil
 
 TEST(MiddleImage, IsTheFrameThatWouldBePublishedWithThatReference) {
   PixelEventLists lists(kSize, {});
+  lists.keepIntervals(true);
   lists.append(testing::wireView(testing::toWire(someEvents())));
   const std::vector<std::uint8_t> blurry = testing::makeGreyImage(kSize, 3);
   const ImageView view = {blurry.data(), kSize, static_cast<std::size_t>(kSize.width),
@@ -58,13 +59,15 @@ TEST(MiddleImage, IsTheFrameThatWouldBePublishedWithThatReference) {
   const auto expected = published(ExposureInstant::kMid, true).outputs.at(0).pixels;
   for (const ExposureInstant reference : {ExposureInstant::kStart, ExposureInstant::kEnd}) {
     std::vector<float> gain(kSize.pixelCount());
-    DoubleIntegral integral(kSize, kThresholds, Weighting::kTime);
+    const LevelModel level = DeblurParameters{}.level;
+    DoubleIntegral integral(kSize, kThresholds, Weighting::kTime, level);
     integral.close(lists, kExposure, kExposure.at(reference), gain.data());
     LatentImage latent_image(FilterParameters{});
     MiddleImage middle(latent_image);
-    middle.take(gain, kExposure.at(reference), kThresholds);
-    const std::vector<std::uint8_t> shown = pixelsOf(
-        middle.show(view, lists, kExposure.at(ExposureInstant::kMid), CameraResponse::linear()));
+    middle.take(gain, lists, {kExposure.at(reference), kExposure.end_ns}, {kThresholds, level});
+    const std::vector<std::uint8_t> shown =
+        pixelsOf(middle.show(view, lists, {kExposure.at(ExposureInstant::kMid), kExposure.end_ns},
+                             CameraResponse::linear()));
     ASSERT_EQ(shown.size(), expected.size());
     int largest = 0;
     for (std::size_t i = 0; i < shown.size(); ++i) {

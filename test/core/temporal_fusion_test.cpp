@@ -38,8 +38,8 @@ class TemporalFusionTest : public ::testing::Test {
                                  std::uint64_t epoch = 0) {
     std::vector<std::uint8_t> pixels(kSize.pixelCount(), static_cast<std::uint8_t>(level));
     drawn_ = fusion_.apply(
-        {kZero + std::llround(t_ms * kMs), exposure_ns, epoch}, stream_, kThresholds,
-        CameraResponse::linear(), kWeight,
+        {{kZero + std::llround(t_ms * kMs), INT64_MAX}, exposure_ns, epoch}, stream_,
+        {kThresholds, {}}, CameraResponse::linear(), kWeight,
         {pixels.data(), kSize, static_cast<std::size_t>(kSize.width), PixelFormat::kMono8});
     return pixels;
   }

@@ -169,7 +169,7 @@ std::string ScheduleChecker::memoryFault() const {
   }
   // One chunk is filled and one is only partly used; an array may be held apart as it came.
   constexpr std::size_t kChunk = PixelEventLists::kChunkEvents;
-  constexpr std::size_t kChunkBytes = kChunk * sizeof(PackedEvent) + 64;
+  constexpr std::size_t kChunkBytes = kChunk * (sizeof(PackedEvent) + sizeof(std::uint16_t)) + 64;
   const std::size_t bound = ((max_events + kChunk - 1) / kChunk + 2) * kChunkBytes +
                             2 * largest_array_ * kWireEventBytes + largest_pixels_ * kBytesPerPixel;
   if (status.buffer_bytes > bound) {

@@ -8,14 +8,24 @@
 ///
 ///     E(f) = 1/T * integral_start^end v(t) dt / v(f)        L(f) = B / E(f) = B * gain
 ///
-/// v is piecewise constant: m_k = exp(c_k) multiplies it at event k. The paper's counter weighting
-/// replaces t by the index of the event in the frame and T by the number of events.
+/// In plain EDI v is piecewise constant: m_k = exp(c_k) multiplies it at event k. The paper's
+/// counter weighting replaces t by the index of the event in the frame and T by the number of
+/// events.
 ///
 /// v(f) counts the events in [start, f): an event exactly at the reference time comes after it.
 ///
+/// With a LevelModel, v rises towards each event (level_model.hpp). Ramps follow from the events of
+/// the window and from the time of each pixel's last event before it; of events at or after its end
+/// nothing is known when it is closed.
+///
 /// Method. The window is cut at f. With A the integral over [start, f) and B the one over [f, end),
 /// the latter relative to f, E(f) = (A / v(f) + B) / T. Each of both is a running sum (16 bytes per
-/// pixel, see running_integral.hpp) that events are folded into as they come.
+/// pixel, see running_integral.hpp) that events are folded into as they come. An event's ramp
+/// counts whole in the part that the event lies in: a ramp across f belongs to a pixel without
+/// events between the ramp's start and f, so in either part it is relative to the same value. Two
+/// sweeps over the events of the first tau of the window and of the time after f settle what is
+/// left: the part of ramps before the window, and the fraction of its next step that each pixel has
+/// gone at f.
 ///
 /// Running ahead. expect() names the window of the coming frame; follow() folds its events in as
 /// they come, short of the ends. close() with the true window does what is left: the events near
@@ -40,6 +50,7 @@
 #include <memory>
 
 #include "fast_edi/core/contrast_threshold.hpp"
+#include "fast_edi/core/level_model.hpp"
 #include "fast_edi/core/pixel_event_lists.hpp"
 #include "fast_edi/core/types.hpp"
 
@@ -63,8 +74,10 @@ class DoubleIntegral {
   static constexpr double kMinGain = 1e-30;
   static constexpr double kMaxGain = 1e30;
 
+  /// \param level of time weighting; counter weighting has the staircase
   /// \throws std::invalid_argument unless both thresholds are finite and > 0
-  DoubleIntegral(SensorSize size, ContrastThresholds thresholds, Weighting weighting);
+  DoubleIntegral(SensorSize size, ContrastThresholds thresholds, Weighting weighting,
+                 LevelModel level = {});
   ~DoubleIntegral();
   DoubleIntegral(const DoubleIntegral&) = delete;
   DoubleIntegral& operator=(const DoubleIntegral&) = delete;
@@ -84,7 +97,8 @@ class DoubleIntegral {
   /// \param window in event time; events outside it have no influence
   /// \param reference_ns in [window.start, window.end]
   /// \param gain pixelCount() floats, written
-  /// \pre lists.size() equals the size given at construction; window.length() > 0
+  /// \pre lists.size() equals the size given at construction; window.length() > 0; unless the level
+  ///      model is the staircase, the lists keep intervals, as for follow()
   CloseReport close(const PixelEventLists& lists, const ExposureInterval& window,
                     std::int64_t reference_ns, float* gain);
 
@@ -92,15 +106,22 @@ class DoubleIntegral {
   void setThresholds(ContrastThresholds thresholds);
   ContrastThresholds thresholds() const { return thresholds_; }
   Weighting weighting() const { return weighting_; }
+  const LevelModel& level() const { return level_; }
   /// Bytes of per-pixel state.
   std::size_t memoryBytes() const;
 
  private:
   struct State;
 
+  void cutRampsAtStart(const PixelEventLists& lists, const ExposureInterval& window,
+                       std::int64_t reference_ns);
+  void addRampsAtReference(const PixelEventLists& lists, const ExposureInterval& window,
+                           std::int64_t reference_ns, float* gain) const;
+
   SensorSize size_;
   ContrastThresholds thresholds_;
   Weighting weighting_;
+  LevelModel level_;
   std::unique_ptr<State> state_;
 };
 

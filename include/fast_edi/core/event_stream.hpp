@@ -58,6 +58,8 @@ class EventStream {
   void dropHeld();
   /// Empties everything; the next array starts up anew.
   void restart();
+  /// See PixelEventLists::keepIntervals(). \pre seen()
+  void keepIntervals(bool keep) { lists_->keepIntervals(keep); }
   /// Changes of limits empty the lists.
   void setLimits(PixelEventLists::Limits limits);
   /// Nothing before \p t_ns will be asked for any more.

@@ -7,12 +7,13 @@
 ///     L(t) = L(f) * v(t) / v(f)    =>    gain(t) = gain(f) * v(t) / v(f)
 ///
 /// and v(t) / v(f) is the product of exp(+c_on) and exp(-c_off) over the pixel's events between f
-/// and t, inverted for t < f. It holds inside the exposure, where gain(t) is 1 / E(t), and beyond
-/// it as far as no event is missing. As everywhere, an event exactly at t comes after t.
+/// and t, inverted for t < f, and of what each pixel has gone of its next step at t, divided by the
+/// same at f (see level_model.hpp). It holds inside the exposure, where gain(t) is 1 / E(t), and
+/// beyond it as far as no event is missing. As everywhere, an event exactly at t comes after t.
 ///
-/// Complexity. Each step costs O(events between the last instant and the next + pixels); a film of
-/// n images in order of time O(events + n * pixels). The double integral itself is not computed
-/// again.
+/// Complexity. Each step costs O(events between the last instant and the next, and of one ramp's
+/// length behind it, + pixels); a film of n images in order of time O(events + n * pixels). The
+/// double integral itself is not computed again.
 ///
 /// Numerics. One double for each pixel, one rounding for each event: equal to
 /// DoubleIntegral::close() at that instant within 1e-6, apart from pixels that leave the range of
@@ -24,24 +25,31 @@
 #include <vector>
 
 #include "fast_edi/core/contrast_threshold.hpp"
+#include "fast_edi/core/level_model.hpp"
 #include "fast_edi/core/pixel_event_lists.hpp"
 
 namespace fast_edi {
 
 class LatentGains {
  public:
-  /// Begins at a frame's reference time.
-  /// \param gain pixelCount gains of DoubleIntegral::close(), not filtered; copied
-  /// \param t_ns the reference time they are for, in event time
-  void start(const float* gain, std::size_t pixel_count, std::int64_t t_ns,
-             ContrastThresholds thresholds);
+  /// What an event means.
+  struct Model {
+    ContrastThresholds thresholds;
+    LevelModel level;
+  };
 
-  /// Goes on, or back, to \p t_ns.
+  /// Begins at a frame's reference time.
+  /// \param gain lists.size().pixelCount() gains of DoubleIntegral::close(), not filtered; copied
+  /// \param reference of the gains: the reference time and the end of the window, in event time
+  void start(const float* gain, const PixelEventLists& lists, const LevelInstant& reference,
+             const Model& model);
+
+  /// Goes on, or back, to another instant.
   /// \param gain pixelCount floats, written, within [DoubleIntegral::kMinGain, kMaxGain]
-  /// \return events walked
+  /// \return events between both instants
   /// \pre start() was called; the lists, of the same size, hold all events between instant() and
-  ///      \p t_ns
-  std::uint64_t at(const PixelEventLists& lists, std::int64_t t_ns, float* gain);
+  ///      \p to, and as far as they are to be known
+  std::uint64_t at(const PixelEventLists& lists, const LevelInstant& to, float* gain);
 
   /// Instant of the last at() or start(), in event time.
   std::int64_t instant() const { return t_ns_; }
@@ -49,8 +57,8 @@ class LatentGains {
 
  private:
   std::int64_t t_ns_ = 0;
-  ContrastThresholds thresholds_;
-  std::vector<double> gain_;  ///< at t_ns_
+  Model model_;
+  std::vector<double> gain_;  ///< at t_ns_, without the steps that have only begun
 };
 
 }  // namespace fast_edi

@@ -41,10 +41,11 @@ class LatentVideo {
   /// A frame was integrated: keeps its gains, before any filter touches them.
   /// \param output with input and exposure (in frame time)
   /// \param epoch of the frames' clock
-  /// \param reference_ns of the gains, in event time
+  /// \param reference of the gains, in event time
   /// \param parameters with the thresholds and the time offset of that integral
   void take(const OutputFrame& output, std::uint64_t epoch, const std::vector<float>& gain,
-            std::int64_t reference_ns, const DeblurParameters& parameters);
+            const PixelEventLists& lists, const LevelInstant& reference,
+            const DeblurParameters& parameters);
 
   /// What the images of this frame are steadied by; without it, none is.
   /// \param middle its latent image at mid-exposure; copied

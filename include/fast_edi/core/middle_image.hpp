@@ -9,11 +9,9 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "fast_edi/core/camera_response.hpp"
-#include "fast_edi/core/contrast_threshold.hpp"
 #include "fast_edi/core/image.hpp"
 #include "fast_edi/core/latent_gains.hpp"
 #include "fast_edi/core/latent_image.hpp"
@@ -28,15 +26,15 @@ class MiddleImage {
   explicit MiddleImage(LatentImage& latent_image) : latent_image_(latent_image) {}
 
   /// A frame was integrated: keeps its gains, before any filter touches them.
-  /// \param reference_ns instant of the gains, in event time
-  void take(const std::vector<float>& gain, std::int64_t reference_ns,
-            ContrastThresholds thresholds);
+  /// \param reference of the gains, in event time
+  void take(const std::vector<float>& gain, const PixelEventLists& lists,
+            const LevelInstant& reference, const LatentGains::Model& model);
 
   /// \param blurry of the size of the gains
-  /// \param middle_ns in event time; the lists hold all events between it and the reference
+  /// \param middle in event time; the lists hold all events between it and the reference
   /// \return valid until the next call
   /// \pre take() was called for this frame
-  ImageView show(const ImageView& blurry, const PixelEventLists& lists, std::int64_t middle_ns,
+  ImageView show(const ImageView& blurry, const PixelEventLists& lists, const LevelInstant& middle,
                  const CameraResponse& response);
 
   std::size_t memoryBytes() const;

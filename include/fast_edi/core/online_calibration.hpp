@@ -16,9 +16,10 @@
 ///
 /// w rising from 0 to 1 during the first exposure, 1 between them, and falling back to 0 during the
 /// second: what the mean levels of the exposures differ by, counted in events; n_i the change of
-/// level by the events during exposure i of length T_i. Both B and x are means over exposures, so
-/// neither blur nor the quantisation at one instant biases the fit, as it would for a fit of
-/// log L2 - log L1 to counts of events.
+/// level by the events during exposure i of length T_i. An event with a ramp (see level_model.hpp)
+/// counts there at the mean time of its step, h r / 2 before it. Both B and x are means over
+/// exposures, so neither blur nor the quantisation at one instant biases the fit, as it would for a
+/// fit of log L2 - log L1 to counts of events.
 ///
 /// Fit: least squares over pixels that tell something (|x_on - x_off| >= 3, hardly any events back
 /// and forth, no grey level near black or saturation), weighted by the square of the intensity
@@ -47,6 +48,7 @@
 #include "fast_edi/core/camera_response.hpp"
 #include "fast_edi/core/contrast_threshold.hpp"
 #include "fast_edi/core/image.hpp"
+#include "fast_edi/core/level_model.hpp"
 #include "fast_edi/core/pixel_event_lists.hpp"
 #include "fast_edi/core/types.hpp"
 
@@ -77,6 +79,7 @@ class OnlineCalibration {
     bool contrast = true;                   ///< learn the thresholds
     bool delay = true;                      ///< learn the delay
     std::uint64_t most_events = 2'000'000;  ///< of a pair
+    LevelModel level = {};                  ///< that the gains are made with
   };
 
   /// A deblurred frame. Times are event times: shifted by time offset and delay already.

@@ -48,6 +48,8 @@ constexpr ParameterRange kForwardJump{"max_forward_jump_ms", "ms", {1.0, 3600e3}
 constexpr ParameterRange kBufferedEvents{"max_buffered_events", "events", {1.0, 4e9}};
 constexpr ParameterRange kLatentImages{
     "latent_images", "images per exposure", {0.0, kMaxLatentImages}};
+constexpr ParameterRange kLevelRamp{"level_ramp_ms", "ms", {0.1, 16.0, true}};
+constexpr ParameterRange kLevelRampFraction{"level_ramp_fraction", "", {0.0, 1.0}};
 constexpr ParameterRange kFilterGainRange{"filter_gain_range", "natural log", {0.01, 10.0}};
 constexpr ParameterRange kFilterGainSigma{"filter_gain_sigma_px", "px", {0.1, 10.0}};
 constexpr ParameterRange kFilterGainRestore{

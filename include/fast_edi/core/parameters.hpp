@@ -13,6 +13,7 @@
 #include "fast_edi/core/event_mapping.hpp"
 #include "fast_edi/core/latent_image.hpp"
 #include "fast_edi/core/latent_instants.hpp"
+#include "fast_edi/core/level_model.hpp"
 #include "fast_edi/core/types.hpp"
 
 namespace fast_edi {
@@ -34,7 +35,8 @@ struct DeblurParameters {
   std::int64_t max_backward_jump_ns = 500 * kNanosecondsPerMillisecond;
   std::int64_t max_forward_jump_ns = 10'000 * kNanosecondsPerMillisecond;
   CameraResponse response = CameraResponse::linear();
-  LatentSampling latent;  ///< of the high-rate video
+  LatentSampling latent;                                   ///< of the high-rate video
+  LevelModel level{4 * kNanosecondsPerMillisecond, 0.85};  ///< see levelModel()
   FilterParameters filter;
   bool refine_contrast = true;  ///< learn the thresholds from the recording; needs filter.enabled
   bool refine_delay = true;     ///< learn the delay of events behind frames; needs filter.enabled
@@ -44,6 +46,9 @@ struct DeblurParameters {
 constexpr std::int64_t kMaxExposure_ns = kNanosecondsPerSecond;
 /// Stamps are 32-bit seconds; with this limit no sum of stamp, offset and jump limit overflows.
 constexpr std::int64_t kMaxTimeOffset_ns = 3'000'000'000 * kNanosecondsPerSecond;
+
+/// The level model in force: the staircase with counter weighting and for plain EDI.
+LevelModel levelModel(const DeblurParameters& parameters);
 
 // Both against parameter_ranges.hpp. They throw std::invalid_argument naming the parameter, its
 // value and what was expected.

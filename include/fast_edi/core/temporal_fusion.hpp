@@ -1,11 +1,10 @@
 /// \file
 /// Draws each latent image towards the one before it, carried on by the events between the two.
 ///
-/// With L1' the image before as it was shown, T1 and T2 the lengths of both exposures and s the
-/// step
-/// (+c_on, -c_off) of each event of a pixel between both references,
+/// With L1' the image before as it was shown, T1 and T2 the lengths of both exposures and l the
+/// change of a pixel's level between both references (see level_model.hpp),
 ///
-///     P = L1' exp(sum s) T2 / T1,    L2' = L2 + w (P - L2)
+///     P = L1' exp(l) T2 / T1,    L2' = L2 + w (P - L2)
 ///
 /// Consecutive images then agree better with the events between them, which is what trackers go by
 /// that follow an image by its events. Each of them alone is farther from the truth: P has the
@@ -20,7 +19,6 @@
 #include <vector>
 
 #include "fast_edi/core/camera_response.hpp"
-#include "fast_edi/core/contrast_threshold.hpp"
 #include "fast_edi/core/event_stream.hpp"
 #include "fast_edi/core/image.hpp"
 #include "fast_edi/core/latent_gains.hpp"
@@ -36,16 +34,16 @@ class TemporalFusion {
 
   /// A frame, by what carries an image from one to the next.
   struct Frame {
-    std::int64_t reference_ns = 0;  ///< instant of the image, in event time
-    std::int64_t exposure_ns = 0;   ///< > 0
-    std::uint64_t epoch = 0;        ///< of the frames' clock
+    LevelInstant reference;        ///< of the image, in event time
+    std::int64_t exposure_ns = 0;  ///< > 0
+    std::uint64_t epoch = 0;       ///< of the frames' clock
   };
 
   /// \param image latent image of the frame; changed in place, unless there is none before it, or
   ///        events between the two are missing
   /// \param weight w, 0 to kMaxWeight
   /// \return whether it was drawn
-  bool apply(const Frame& frame, const EventStream& events, ContrastThresholds thresholds,
+  bool apply(const Frame& frame, const EventStream& events, const LatentGains::Model& model,
              const CameraResponse& response, double weight, const MutableImageView& image);
 
   /// The next image has none before it.
