@@ -152,20 +152,19 @@ std::vector<ConfigKey> filterKeys() {
            "all processing beyond plain EDI: the filters and the learning below"},
           [](bool value, ParameterDraft& draft) { draft.loaded.deblur.filter.enabled = value; }),
       boolKey({"filter_despeckle", "", boolText(defaults.gain.despeckle),
-               "limit each pixel's log gain to the range of its neighbours': hot pixels, lone "
-               "noise events"},
+               "give hot pixels, alone or in groups and columns, the log gain of their neighbours"},
               [](bool value, ParameterDraft& draft) {
                 draft.loaded.deblur.filter.gain.despeckle = value;
               }),
       boolKey({"filter_gain", "", boolText(defaults.gain.smooth),
-               "smooth the map of log gains, keeping its edges: noise of events"},
+               "take the noise of events out of the map of log gains, keeping edges and corners"},
               [](bool value, ParameterDraft& draft) {
                 draft.loaded.deblur.filter.gain.smooth = value;
               }),
-      numberKey(limits::kFilterGainRange, numberText(static_cast<double>(defaults.gain.range_log)),
-                "differences of log gain well above this are edges",
+      numberKey(limits::kFilterGainNoise, numberText(static_cast<double>(defaults.gain.noise)),
+                "noise of a log gain; differences well above this are edges",
                 [](double value, ParameterDraft& draft) {
-                  draft.loaded.deblur.filter.gain.range_log = static_cast<float>(value);
+                  draft.loaded.deblur.filter.gain.noise = static_cast<float>(value);
                 }),
       numberKey(limits::kFilterGainSigma,
                 numberText(static_cast<double>(defaults.gain.spatial_sigma_px)),
@@ -174,8 +173,8 @@ std::vector<ConfigKey> filterKeys() {
                   draft.loaded.deblur.filter.gain.spatial_sigma_px = static_cast<float>(value);
                 }),
       numberKey(limits::kFilterGainRestore, numberText(static_cast<double>(defaults.gain.restore)),
-                "fraction by which structure of the log gains is raised: what that smoothing and "
-                "the photoreceptor have lowered; 0 = off",
+                "fraction by which log gains of few events are raised: what lies between two "
+                "thresholds; 0 = off",
                 [](double value, ParameterDraft& draft) {
                   draft.loaded.deblur.filter.gain.restore = static_cast<float>(value);
                 }),
@@ -215,7 +214,7 @@ std::vector<ConfigKey> filterKeys() {
                "learn by how much events lag behind the light, up to 5 ms"},
               [](bool value, ParameterDraft& draft) { draft.loaded.deblur.refine_delay = value; }),
       numberKey(limits::kFrameNoise, numberText(defaults.frame_noise_dn),
-                "standard deviation of a frame's noise",
+                "standard deviation of a frame's noise; 0 = measured in each frame",
                 [](double value, ParameterDraft& draft) {
                   draft.loaded.deblur.filter.frame_noise_dn = value;
                 }),

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fast_edi/core/double_integral.hpp"
+#include "fast_edi/core/event_counts.hpp"
 #include "fast_edi/core/event_stream.hpp"
 #include "fast_edi/core/exposure_pairing.hpp"
 #include "fast_edi/core/exposure_window.hpp"
@@ -119,8 +120,8 @@ class Deblurrer::Impl {
   void forgetBefore(std::int64_t t_ns);
   void beforeBreak(StreamBreak kind, std::int64_t next_event_ns);
   void deblur(OutputFrame& output, const ExposureInterval& window);
-  ImageView steadied(const OutputFrame& output, const ExposureInterval& window,
-                     const MutableImageView& image);
+  ImageView steadied(const OutputFrame& output, const ExposureEvents& events,
+                     const ExposureInterval& window, const MutableImageView& image);
   void passThrough(OutputFrame& output, PassReason reason);
   bool isLaterThanLastOutput(const WaitingFrame& frame, std::int64_t stamp_ns) const;
 
@@ -164,6 +165,7 @@ class Deblurrer::Impl {
   SensorSize integral_size_;
   std::uint64_t integral_generation_ = 0;
   std::vector<float> gain_;
+  std::optional<EventCounts> event_counts_;       ///< of the integral's size; for the filters alone
   std::optional<OnlineCalibration> calibration_;  ///< of the integral's size
   std::uint64_t calibration_generation_ = 0;      ///< of the lists that it learned from
   std::vector<float> unfiltered_gain_;            ///< for it
@@ -327,6 +329,7 @@ DeblurStatus Deblurrer::Impl::status() const {
                         fusion_.memoryBytes() + latent_image_.memoryBytes() + video_.memoryBytes() +
                         middle_.memoryBytes() + compensation_.memoryBytes() +
                         (integral_ ? integral_->memoryBytes() : 0) +
+                        (event_counts_ ? event_counts_->memoryBytes() : 0) +
                         (calibration_ ? calibration_->memoryBytes() : 0);
   if (events_.lists() != nullptr) {
     status.sensor_size = events_.lists()->size();
@@ -510,11 +513,16 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
       window.start_ns + (exposure.at(parameters_.reference) - exposure.start_ns);
   const CloseReport report = integral_->close(*events_.lists(), window, reference_ns, gain_.data());
   expectation_.reset();
+  if (parameters_.filter.enabled) {
+    event_counts_->close(*events_.lists(), window);
+  }
+  const ExposureEvents exposure_events{event_counts_->data(), parameters_.thresholds};
   const LevelInstant reference{reference_ns, window.end_ns};
   const LatentGains::Model model{parameters_.thresholds, levelModel(parameters_)};
   const bool wants_video = parameters_.latent.isOn() && sink_.wantsLatentImages();
   if (wants_video) {
-    video_.take(output, output_epoch_, gain_, *events_.lists(), reference, parameters_);
+    video_.take(output, output_epoch_, gain_, *event_counts_, *events_.lists(), reference,
+                parameters_);
   } else {
     video_.breakOff();
   }
@@ -528,10 +536,11 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
   }
   const MutableImageView out = sink_.begin(output.input);
   if (out.data != nullptr) {
-    latent_image_.write(output.input.image, gain_.data(), parameters_.response, out);
+    latent_image_.write(output.input.image, gain_.data(), exposure_events, parameters_.response,
+                        out);
   }
   if (steadies) {
-    const ImageView middle = steadied(output, window, out);
+    const ImageView middle = steadied(output, exposure_events, window, out);
     if (wants_video) {
       video_.setMiddle(middle);
     }
@@ -562,13 +571,13 @@ void Deblurrer::Impl::deblur(OutputFrame& output, const ExposureInterval& window
 /// Steadies the latent image at the reference by that of mid-exposure, unless it is that.
 /// \return the one of mid-exposure, valid until the next call
 /// \pre unless the reference is mid-exposure: middle_ has taken this frame
-ImageView Deblurrer::Impl::steadied(const OutputFrame& output, const ExposureInterval& window,
-                                    const MutableImageView& image) {
+ImageView Deblurrer::Impl::steadied(const OutputFrame& output, const ExposureEvents& events,
+                                    const ExposureInterval& window, const MutableImageView& image) {
   if (parameters_.reference == ExposureInstant::kMid) {
     return {image.data, image.size, image.step, image.format};
   }
   const ImageView middle =
-      middle_.show(output.input.image, *events_.lists(),
+      middle_.show(output.input.image, events, *events_.lists(),
                    {window.at(ExposureInstant::kMid), window.end_ns}, parameters_.response);
   compensation_.setReference(middle);
   compensation_.apply(image);
@@ -606,12 +615,14 @@ bool Deblurrer::Impl::prepareIntegral(bool may_allocate) {
     integral_ = std::make_unique<DoubleIntegral>(integral_size_, parameters_.thresholds,
                                                  parameters_.weighting, levelModel(parameters_));
     gain_.resize(integral_size_.pixelCount());
+    event_counts_.emplace(integral_size_);
     expectation_.reset();
     resetCalibration();
   }
   events_.keepIntervals(!integral_->level().isStaircase());
   if (integral_generation_ != events_.generation()) {
     integral_->forget();
+    event_counts_->forget();
     integral_generation_ = events_.generation();
     expectation_.reset();
   }
@@ -646,6 +657,9 @@ void Deblurrer::Impl::expectNext() {
 void Deblurrer::Impl::follow() {
   if (!parameters_.passthrough && events_.lists() != nullptr && prepareIntegral(false)) {
     integral_->follow(*events_.lists());
+    if (parameters_.filter.enabled && expectation_) {
+      event_counts_->follow(*events_.lists(), expectation_->window);
+    }
   }
 }
 

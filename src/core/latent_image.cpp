@@ -1,10 +1,24 @@
 #include "fast_edi/core/latent_image.hpp"
 
+#include <algorithm>
+
+#include "fast_edi/core/image_plane.hpp"
 #include "fast_edi/core/parameter_ranges.hpp"
 
 namespace fast_edi {
+namespace {
+
+/// From here on a level is cut off [8-bit DN].
+constexpr float kSaturated_dn = 254.0F;
+/// Flicker and noise explain no lower gain than this.
+constexpr float kUnexplained = 0.5F;
+/// A gain this low says that something bright has moved away.
+constexpr float kMovedAway = 0.25F;
+
+}  // namespace
+
 void validate(const FilterParameters& parameters) {
-  requireWithin(limits::kFilterGainRange, parameters.gain.range_log);
+  requireWithin(limits::kFilterGainNoise, parameters.gain.noise);
   requireWithin(limits::kFilterGainSigma, parameters.gain.spatial_sigma_px);
   requireWithin(limits::kFilterGainRestore, parameters.gain.restore);
   requireWithin(limits::kFrameNoise, parameters.frame_noise_dn);
@@ -27,28 +41,64 @@ void LatentImage::fit(const ImageView& blurry) {
   size_ = blurry.size;
   format_ = blurry.format;
   gain_filter_ = std::make_unique<GainFilter>(size_, parameters_.gain);
-  FrameNoiseFilter::Settings settings;
-  settings.noise_dn = static_cast<float>(parameters_.frame_noise_dn);
-  frame_noise_filter_ = std::make_unique<FrameNoiseFilter>(size_, format_, settings);
+  frame_noise_filter_ = std::make_unique<FrameNoiseFilter>(size_, format_);
 }
 
-void LatentImage::write(const ImageView& blurry, float* gain, const CameraResponse& response,
-                        const MutableImageView& out) {
+/// Of several channels the lowest counts: a pixel is saturated where all of them are.
+void LatentImage::loadLevels(const ImageView& blurry) {
+  level_dn_.resize(blurry.size.pixelCount());
+  loadPlane(blurry, 0, level_dn_.data());
+  for (int channel = 1; channel < channels(blurry.format); ++channel) {
+    channel_dn_.resize(level_dn_.size());
+    loadPlane(blurry, channel, channel_dn_.data());
+    for (std::size_t i = 0; i < level_dn_.size(); ++i) {
+      level_dn_[i] = std::min(level_dn_[i], channel_dn_[i]);
+    }
+  }
+  if (bytesPerSample(blurry.format) == 2) {
+    for (float& level : level_dn_) {
+      level *= 1.0F / static_cast<float>(kDn16PerDn8);
+    }
+  }
+}
+
+void LatentImage::raiseSaturated(float* gain) const {
+  for (std::size_t i = 0; i < level_dn_.size(); ++i) {
+    if (level_dn_[i] >= kSaturated_dn && gain[i] < 1.0F && gain[i] > kMovedAway) {
+      // From 1 at kUnexplained down to the gain itself at kMovedAway.
+      const float moved =
+          std::clamp((kUnexplained - gain[i]) / (kUnexplained - kMovedAway), 0.0F, 1.0F);
+      gain[i] = 1.0F - moved * (1.0F - gain[i]);
+    }
+  }
+}
+
+void LatentImage::write(const ImageView& blurry, float* gain, const ExposureEvents& events,
+                        const CameraResponse& response, const MutableImageView& out) {
   if (!parameters_.enabled) {
     response.applyGain(blurry, gain, out);
     return;
   }
   fit(blurry);
-  gain_filter_->apply(gain);
+  loadLevels(blurry);
+  gain_filter_->apply(level_dn_.data(), events, gain);
+  raiseSaturated(gain);
+  // Before the image is written: it may be written over the blurry one.
+  const float noise_dn = parameters_.frame_noise_dn > 0.0
+                             ? static_cast<float>(parameters_.frame_noise_dn)
+                             : noise_estimate_.of(blurry);
   response.applyGain(blurry, gain, out);
   if (parameters_.frame_noise) {
-    frame_noise_filter_->apply({out.data, out.size, out.step, out.format}, out);
+    frame_noise_filter_->apply({out.data, out.size, out.step, out.format}, noise_dn,
+                               gain_filter_->meanCounts(), out);
   }
 }
 
 std::size_t LatentImage::memoryBytes() const {
   return (gain_filter_ ? gain_filter_->memoryBytes() : 0) +
-         (frame_noise_filter_ ? frame_noise_filter_->memoryBytes() : 0);
+         (frame_noise_filter_ ? frame_noise_filter_->memoryBytes() : 0) +
+         noise_estimate_.memoryBytes() +
+         (level_dn_.capacity() + channel_dn_.capacity()) * sizeof(float);
 }
 
 }  // namespace fast_edi

@@ -9,8 +9,9 @@
 namespace fast_edi {
 
 void LatentVideo::take(const OutputFrame& output, std::uint64_t epoch,
-                       const std::vector<float>& gain, const PixelEventLists& lists,
-                       const LevelInstant& reference, const DeblurParameters& parameters) {
+                       const std::vector<float>& gain, const EventCounts& counts,
+                       const PixelEventLists& lists, const LevelInstant& reference,
+                       const DeblurParameters& parameters) {
   std::swap(last_, current_);  // rather than move: both keep their memory
   has_last_ = has_current_ && last_.epoch == epoch;
   if (!has_last_) {
@@ -27,6 +28,7 @@ void LatentVideo::take(const OutputFrame& output, std::uint64_t epoch,
   current_.middle.clear();
   current_.gains.start(gain.data(), lists, reference,
                        {parameters.thresholds, levelModel(parameters)});
+  current_.counts.assign(counts.data(), counts.data() + 2 * counts.pixelCount());
   has_current_ = true;
   gain_.resize(gain.size());
 }
@@ -40,8 +42,9 @@ void LatentVideo::breakOff() {
 
 std::size_t LatentVideo::memoryBytes() const {
   return current_.gains.memoryBytes() + last_.gains.memoryBytes() +
-         gain_.capacity() * sizeof(float) + current_.middle.memoryBytes() +
-         last_.middle.memoryBytes();
+         gain_.capacity() * sizeof(float) +
+         (current_.counts.capacity() + last_.counts.capacity()) * sizeof(std::uint16_t) +
+         current_.middle.memoryBytes() + last_.middle.memoryBytes();
 }
 
 std::size_t LatentVideo::write(const EventStream& events, const DeblurParameters& parameters) {
@@ -91,7 +94,8 @@ std::size_t LatentVideo::show(Source& source, const std::vector<std::int64_t>& i
     }
     source.gains.at(*events.lists(), {t_ns + source.offset_ns, known_until_ns}, gain_.data());
     const MutableImageView out = sink_.beginLatent(source.input);
-    latent_image_.write(source.input.image, gain_.data(), parameters.response, out);
+    latent_image_.write(source.input.image, gain_.data(),
+                        {source.counts.data(), parameters.thresholds}, parameters.response, out);
     if (steadies) {
       compensation_.apply(out);
     }

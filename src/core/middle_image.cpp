@@ -8,10 +8,12 @@ void MiddleImage::take(const std::vector<float>& gain, const PixelEventLists& li
   gain_.resize(gain.size());
 }
 
-ImageView MiddleImage::show(const ImageView& blurry, const PixelEventLists& lists,
-                            const LevelInstant& middle, const CameraResponse& response) {
+ImageView MiddleImage::show(const ImageView& blurry, const ExposureEvents& events,
+                            const PixelEventLists& lists, const LevelInstant& middle,
+                            const CameraResponse& response) {
   gains_.at(lists, middle, gain_.data());
-  latent_image_.write(blurry, gain_.data(), response, image_.reshape(blurry.size, blurry.format));
+  latent_image_.write(blurry, gain_.data(), events, response,
+                      image_.reshape(blurry.size, blurry.format));
   return image_.view();
 }
 

@@ -37,7 +37,7 @@ TEST(LiveParameters, BeginWithWhatWasGivenAndDefaults) {
   EXPECT_EQ(live.values().at("contrast_threshold_on"), "0.3");
   EXPECT_EQ(live.values().at("exposure_time_us"), "1e4");
   EXPECT_EQ(live.values().at("reference"), "end");
-  EXPECT_EQ(live.values().at("filter_gain_range"), "0.35");
+  EXPECT_EQ(live.values().at("filter_gain_noise"), "0.18");
   EXPECT_EQ(live.values().count("lazy"), 0u);
   EXPECT_EQ(startedWith(kFromBiases).values().at("contrast_threshold_off"), "0");
 }

@@ -349,8 +349,11 @@ TEST(DeblurrerSchedule, ItsPromisesHoldWhateverComes) {
   }
   // The runs reached what they are meant to reach.
   EXPECT_GT(deblurred, 500u);
-  for (const auto& [reason, count] : passed) {
-    EXPECT_GT(count, 0u) << toString(static_cast<PassReason>(reason));
+  for (const auto& [index, count] : passed) {
+    const auto reason = static_cast<PassReason>(index);
+    if (reason != PassReason::kTooManyWaiting) {  // its runs are longer: deblurrer_test.cpp
+      EXPECT_GT(count, 0u) << toString(reason);
+    }
   }
 }
 

@@ -26,6 +26,12 @@ struct Image {
   MutableImageView mutableView() { return {bytes.data(), kSize, step, format}; }
 };
 
+constexpr float kNoise_dn = 1.5F;
+
+std::vector<float> noEvents() {
+  return std::vector<float>(kSize.pixelCount());
+}
+
 double noiseOf(const Image& image, double mean) {
   double squares = 0.0;
   for (int y = 0; y < kSize.height; ++y) {
@@ -47,9 +53,9 @@ TEST(FrameNoiseFilter, LowersReadNoise) {
     byte = static_cast<std::uint8_t>(std::lround(read(random)));
   }
   const double before = noiseOf(image, 100.0);
-  FrameNoiseFilter filter(kSize, PixelFormat::kMono8, {});
-  filter.apply(image.view(), image.mutableView());
-  EXPECT_LT(noiseOf(image, 100.0), 0.45 * before);
+  FrameNoiseFilter filter(kSize, PixelFormat::kMono8);
+  filter.apply(image.view(), kNoise_dn, noEvents().data(), image.mutableView());
+  EXPECT_LT(noiseOf(image, 100.0), 0.5 * before);
 }
 
 TEST(FrameNoiseFilter, LeavesEdgesAndSaturatedAreasAsTheyAre) {
@@ -63,9 +69,43 @@ TEST(FrameNoiseFilter, LeavesEdgesAndSaturatedAreasAsTheyAre) {
                   image.step - half);
     }
     Image out(format);
-    FrameNoiseFilter filter(kSize, format, {});
-    filter.apply(image.view(), out.mutableView());
+    FrameNoiseFilter filter(kSize, format);
+    filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
     EXPECT_EQ(out.bytes, image.bytes) << static_cast<int>(format);
+  }
+}
+
+TEST(FrameNoiseFilter, TakesOutWhatGainsMadeOfNoiseOnlyWhereThereAreEvents) {
+  Image image(PixelFormat::kMono8);
+  std::mt19937 random(12);
+  std::normal_distribution<double> noise(150.0, 4.0);
+  for (std::uint8_t& byte : image.bytes) {
+    byte = static_cast<std::uint8_t>(std::lround(noise(random)));
+  }
+  const double before = noiseOf(image, 150.0);
+  const auto after = [&image](float mean_count) {
+    const std::vector<float> counts(kSize.pixelCount(), mean_count);
+    Image out(PixelFormat::kMono8);
+    FrameNoiseFilter filter(kSize, PixelFormat::kMono8);
+    filter.apply(image.view(), 0.3F, counts.data(), out.mutableView());
+    return noiseOf(out, 150.0);
+  };
+  EXPECT_GT(after(0.0F), 0.95 * before);
+  EXPECT_LT(after(3.0F), 0.7 * before);
+}
+
+TEST(FrameNoiseFilter, SaturatedPixelsStay) {
+  for (const PixelFormat format : {PixelFormat::kMono8, PixelFormat::kMono16}) {
+    Image image(format);
+    std::fill(image.bytes.begin(), image.bytes.end(), std::uint8_t{0xFD});
+    const auto lamp = static_cast<std::size_t>(10 * bytesPerPixel(format));
+    for (std::size_t i = 0; i < static_cast<std::size_t>(bytesPerPixel(format)); ++i) {
+      image.bytes[lamp + i] = 0xFF;
+    }
+    Image out(format);
+    FrameNoiseFilter filter(kSize, format);
+    filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
+    EXPECT_EQ(out.bytes[lamp], 0xFF);
   }
 }
 
@@ -75,8 +115,8 @@ TEST(FrameNoiseFilter, ColoursDoNotMix) {
     image.bytes[i] = static_cast<std::uint8_t>(100 + i % 3);
   }
   Image out(PixelFormat::kColor8);
-  FrameNoiseFilter filter(kSize, PixelFormat::kColor8, {});
-  filter.apply(image.view(), out.mutableView());
+  FrameNoiseFilter filter(kSize, PixelFormat::kColor8);
+  filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
   EXPECT_EQ(out.bytes, image.bytes);
 }
 
@@ -89,16 +129,16 @@ TEST(FrameNoiseFilter, TheMosaicOfABayerFrameStays) {
     }
   }
   Image out(PixelFormat::kBayer8);
-  FrameNoiseFilter filter(kSize, PixelFormat::kBayer8, {});
-  filter.apply(image.view(), out.mutableView());
+  FrameNoiseFilter filter(kSize, PixelFormat::kBayer8);
+  filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
   EXPECT_EQ(out.bytes, image.bytes);
 }
 
 TEST(FrameNoiseFilter, ReadsPaddedRowsAndWritesNothingIntoPadding) {
   Image image(PixelFormat::kMono8, 5);
   Image out(PixelFormat::kMono8, 9);
-  FrameNoiseFilter filter(kSize, PixelFormat::kMono8, {});
-  filter.apply(image.view(), out.mutableView());
+  FrameNoiseFilter filter(kSize, PixelFormat::kMono8);
+  filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
   for (int y = 0; y < kSize.height; ++y) {
     for (std::size_t x = static_cast<std::size_t>(kSize.width); x < out.step; ++x) {
       EXPECT_EQ(out.bytes[static_cast<std::size_t>(y) * out.step + x], 0xAA);

@@ -9,6 +9,7 @@
 
 #include "fast_edi/core/deblurrer.hpp"
 #include "fast_edi/core/double_integral.hpp"
+#include "fast_edi/core/event_counts.hpp"
 #include "support/event_generators.hpp"
 #include "support/pipeline_input.hpp"
 
@@ -65,9 +66,11 @@ TEST(MiddleImage, IsTheFrameThatWouldBePublishedWithThatReference) {
     LatentImage latent_image(FilterParameters{});
     MiddleImage middle(latent_image);
     middle.take(gain, lists, {kExposure.at(reference), kExposure.end_ns}, {kThresholds, level});
-    const std::vector<std::uint8_t> shown =
-        pixelsOf(middle.show(view, lists, {kExposure.at(ExposureInstant::kMid), kExposure.end_ns},
-                             CameraResponse::linear()));
+    EventCounts counts(kSize);
+    counts.close(lists, kExposure);
+    const std::vector<std::uint8_t> shown = pixelsOf(middle.show(
+        view, {counts.data(), kThresholds}, lists,
+        {kExposure.at(ExposureInstant::kMid), kExposure.end_ns}, CameraResponse::linear()));
     ASSERT_EQ(shown.size(), expected.size());
     int largest = 0;
     for (std::size_t i = 0; i < shown.size(); ++i) {

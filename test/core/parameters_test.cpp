@@ -48,7 +48,7 @@ TEST(Parameters, EveryValueOutOfRangeIsNamed) {
       {"close_timeout_ms", [](auto& p) { p.close_timeout_ns = 999'999; }},
       {"max_backward_jump_ms", [](auto& p) { p.max_backward_jump_ns = 0; }},
       {"max_forward_jump_ms", [](auto& p) { p.max_forward_jump_ns = 3'600'000'000'001; }},
-      {"filter_gain_range", [](auto& p) { p.filter.gain.range_log = 1e-20F; }},
+      {"filter_gain_noise", [](auto& p) { p.filter.gain.noise = 1e-20F; }},
       {"filter_gain_sigma_px", [](auto& p) { p.filter.gain.spatial_sigma_px = 1e-20F; }},
       {"frame_noise_dn", [](auto& p) { p.filter.frame_noise_dn = 1e-20; }},
       {"max_buffered_events", [](auto& p) { p.max_buffered_events = 0; }},

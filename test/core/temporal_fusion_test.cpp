@@ -128,8 +128,8 @@ TEST_F(TemporalFusionTest, DoesTheSameInEachFormat) {
             view.row(y)[i + 1] = static_cast<std::uint8_t>(wide >> 8u);
         }
       }
-      fusion.apply({kZero + (level == 100 ? 10 : 20) * kMs, kExposure_ns, 0}, stream_, kThresholds,
-                   CameraResponse::linear(), kWeight, view);
+      fusion.apply({{kZero + (level == 100 ? 10 : 20) * kMs, INT64_MAX}, kExposure_ns, 0}, stream_,
+                   {kThresholds, {}}, CameraResponse::linear(), kWeight, view);
     }
     const std::uint8_t* last = image.view().row(kSize.height - 1) + image.view().step - 2;
     const int level = format == PixelFormat::kMono16 ? last[0] + 256 * last[1] : last[1];

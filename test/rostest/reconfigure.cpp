@@ -200,12 +200,12 @@ TEST_F(Reconfigure, KeepsTheOldOfAValueOutOfRangeAndSaysSo) {
       set(Values()
               .number("contrast_threshold_on", -0.3)
               .number("exposure_time_us", 2e6)
-              .number("filter_gain_range", std::numeric_limits<double>::quiet_NaN())
+              .number("filter_gain_noise", std::numeric_limits<double>::quiet_NaN())
               .text("reference", "middle")
               .number("time_offset_us", 1500.5));
   EXPECT_EQ(numberIn(reply, "contrast_threshold_on"), 0.3);
   EXPECT_EQ(numberIn(reply, "exposure_time_us"), 0.0);
-  EXPECT_EQ(numberIn(reply, "filter_gain_range"), 0.35);
+  EXPECT_EQ(numberIn(reply, "filter_gain_noise"), 0.18);
   EXPECT_EQ(valueIn(reply.strs, "reference"), "mid");
   EXPECT_EQ(numberIn(reply, "time_offset_us"), 1500.5) << "a good value beside bad ones";
 

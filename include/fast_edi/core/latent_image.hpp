@@ -1,16 +1,23 @@
 /// \file
 /// The last stage: from a blurry frame and the gains of its pixels to the latent image.
 ///
-///     gains -> GainFilter -> CameraResponse::applyGain -> FrameNoiseFilter -> outgoing image
+///     gains -> GainFilter -> saturated pixels -> CameraResponse::applyGain -> FrameNoiseFilter
+///     -> outgoing image
 ///
 /// The filters are what goes beyond plain EDI; each can be switched off, all with
 /// FilterParameters::enabled.
+///
+/// Saturated pixels. A level cut off at the highest digital number is a lower bound of the mean
+/// over the exposure. A gain little below 1 (lamps that flicker) would turn it grey without cause,
+/// so it counts as 1; a gain of less than 1/4 says that something bright has moved away, and stays.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "fast_edi/core/camera_response.hpp"
+#include "fast_edi/core/exposure_events.hpp"
+#include "fast_edi/core/frame_noise_estimate.hpp"
 #include "fast_edi/core/frame_noise_filter.hpp"
 #include "fast_edi/core/gain_filter.hpp"
 #include "fast_edi/core/image.hpp"
@@ -21,7 +28,7 @@ struct FilterParameters {
   bool enabled = true;  ///< false: plain EDI
   GainFilter::Settings gain;
   bool frame_noise = true;      ///< take out the frame's own noise, too
-  double frame_noise_dn = 1.5;  ///< its standard deviation [8-bit DN]
+  double frame_noise_dn = 0.0;  ///< its standard deviation [8-bit DN]; 0 = measured in each frame
   double temporal = 0.0;        ///< weight of the image before; 0 = off, see TemporalFusion
   bool motion = true;           ///< steady images of other instants by that of mid-exposure
 };
@@ -37,20 +44,26 @@ class LatentImage {
   void setParameters(const FilterParameters& parameters);
 
   /// \param gain width x height gains of DoubleIntegral::close(); filtered in place
+  /// \param events of the exposure of the blurry frame
   /// \pre blurry and out have the same size and format
-  void write(const ImageView& blurry, float* gain, const CameraResponse& response,
-             const MutableImageView& out);
+  void write(const ImageView& blurry, float* gain, const ExposureEvents& events,
+             const CameraResponse& response, const MutableImageView& out);
 
   std::size_t memoryBytes() const;
 
  private:
   void fit(const ImageView& blurry);
+  void loadLevels(const ImageView& blurry);
+  void raiseSaturated(float* gain) const;
 
   FilterParameters parameters_;
   SensorSize size_;
   PixelFormat format_ = PixelFormat::kMono8;
   std::unique_ptr<GainFilter> gain_filter_;
   std::unique_ptr<FrameNoiseFilter> frame_noise_filter_;
+  FrameNoiseEstimate noise_estimate_;
+  std::vector<float> level_dn_;  ///< of the blurry frame [8-bit DN]; the lowest of its channels
+  std::vector<float> channel_dn_;
 };
 
 }  // namespace fast_edi

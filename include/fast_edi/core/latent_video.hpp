@@ -19,6 +19,7 @@
 #include <optional>
 #include <vector>
 
+#include "fast_edi/core/event_counts.hpp"
 #include "fast_edi/core/event_stream.hpp"
 #include "fast_edi/core/frame_sink.hpp"
 #include "fast_edi/core/latent_gains.hpp"
@@ -41,10 +42,11 @@ class LatentVideo {
   /// A frame was integrated: keeps its gains, before any filter touches them.
   /// \param output with input and exposure (in frame time)
   /// \param epoch of the frames' clock
+  /// \param counts of the events in the exposure; copied
   /// \param reference of the gains, in event time
   /// \param parameters with the thresholds and the time offset of that integral
   void take(const OutputFrame& output, std::uint64_t epoch, const std::vector<float>& gain,
-            const PixelEventLists& lists, const LevelInstant& reference,
+            const EventCounts& counts, const PixelEventLists& lists, const LevelInstant& reference,
             const DeblurParameters& parameters);
 
   /// What the images of this frame are steadied by; without it, none is.
@@ -71,7 +73,8 @@ class LatentVideo {
     std::uint64_t epoch = 0;       ///< of the frames' clock
     std::uint64_t generation = 0;  ///< of the event lists
     LatentGains gains;
-    StoredImage middle;  ///< latent image at mid-exposure; empty: none
+    std::vector<std::uint16_t> counts;  ///< of the events in the exposure, see EventCounts
+    StoredImage middle;                 ///< latent image at mid-exposure; empty: none
   };
 
   std::size_t bridgeGap(const EventStream& events, const DeblurParameters& parameters);

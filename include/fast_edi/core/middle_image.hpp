@@ -34,7 +34,9 @@ class MiddleImage {
   /// \param middle in event time; the lists hold all events between it and the reference
   /// \return valid until the next call
   /// \pre take() was called for this frame
-  ImageView show(const ImageView& blurry, const PixelEventLists& lists, const LevelInstant& middle,
+  /// \param events of the exposure
+  ImageView show(const ImageView& blurry, const ExposureEvents& events,
+                 const PixelEventLists& lists, const LevelInstant& middle,
                  const CameraResponse& response);
 
   std::size_t memoryBytes() const;

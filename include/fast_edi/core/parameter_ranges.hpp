@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <string>
 
-#include "fast_edi/core/gain_restoration.hpp"
+#include "fast_edi/core/gain_filter.hpp"
 #include "fast_edi/core/latent_instants.hpp"
 #include "fast_edi/core/temporal_fusion.hpp"
 
@@ -50,12 +50,13 @@ constexpr ParameterRange kLatentImages{
     "latent_images", "images per exposure", {0.0, kMaxLatentImages}};
 constexpr ParameterRange kLevelRamp{"level_ramp_ms", "ms", {0.1, 16.0, true}};
 constexpr ParameterRange kLevelRampFraction{"level_ramp_fraction", "", {0.0, 1.0}};
-constexpr ParameterRange kFilterGainRange{"filter_gain_range", "natural log", {0.01, 10.0}};
+constexpr ParameterRange kFilterGainNoise{
+    "filter_gain_noise", "contrast thresholds", {0.01, 10.0}};
 constexpr ParameterRange kFilterGainSigma{"filter_gain_sigma_px", "px", {0.1, 10.0}};
 constexpr ParameterRange kFilterGainRestore{
-    "filter_gain_restore", "", {0.0, static_cast<double>(GainRestoration::kMaxStrength)}};
+    "filter_gain_restore", "", {0.0, static_cast<double>(GainFilter::kMaxRestore)}};
 constexpr ParameterRange kFilterTemporal{"filter_temporal", "", {0.0, TemporalFusion::kMaxWeight}};
-constexpr ParameterRange kFrameNoise{"frame_noise_dn", "8-bit DN", {0.01, 50.0}};
+constexpr ParameterRange kFrameNoise{"frame_noise_dn", "8-bit DN", {0.01, 50.0, true}};
 constexpr ParameterRange kResponseOffset{"response_offset_dn", "DN", {0.0, 255.0}};
 
 }  // namespace limits
