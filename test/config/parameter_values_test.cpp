@@ -221,7 +221,7 @@ TEST(ParameterValues, BothEndsOfEachRangeLeaveAStillSceneAsItIs) {
 TEST(ParameterValues, NumbersTooSmallToMeanAnythingAreRefused) {
   for (const char* name : {"contrast_threshold_on", "contrast_threshold_off", "exposure_time_us",
                            "close_timeout_ms", "max_backward_jump_ms", "max_forward_jump_ms",
-                           "filter_gain_range", "filter_gain_sigma_px", "frame_noise_dn"}) {
+                           "filter_gain_noise", "filter_gain_sigma_px", "frame_noise_dn"}) {
     for (const double value : {1e-7, 1e-20, 1e-46, 1e-300}) {
       SCOPED_TRACE(std::string(name) + " " + scalarText(value));
       YAML::Node root = YAML::Load("{contrast_threshold_on: 0.3, contrast_threshold_off: 0.25}");

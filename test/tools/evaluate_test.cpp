@@ -121,8 +121,8 @@ TEST_F(EvaluateTest, SetsKnowTheirOptions) {
     EXPECT_THAT(result.output, HasSubstr(message));
   };
   fails("--sequences thirteen", "expected twelve, choosing or judging");
-  fails("--sequences twelve --variant 'wide filter_gain_range:=1.0'", "--variant goes with");
-  fails("--sequences choosing --variant filter_gain_range:=1.0", "expected a name");
+  fails("--sequences twelve --variant 'wide filter_gain_noise:=0.5'", "--variant goes with");
+  fails("--sequences choosing --variant filter_gain_noise:=0.5", "expected a name");
   fails("--sequences choosing --measures some", "expected one of reference, tracks");
 }
 
