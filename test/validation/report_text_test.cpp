@@ -23,7 +23,8 @@ TEST(ReportTextTest, EndsWithLinesForAYamlFile) {
   ValidationReport report;
   report.notes = {"a note"};
   report.outcomes = "11 deblurred";
-  report.proposal = {ExposureInstant::kStart, -1500, 0};
+  report.proposal.stamp_reference = ExposureInstant::kStart;
+  report.proposal.time_offset_us = -1500;
   const std::string text = printed(report);
   EXPECT_THAT(text, HasSubstr("frames: 12, every 40.0 ms; exposure messages: 12"));
   EXPECT_THAT(text, HasSubstr("sensor 16x16"));
