@@ -4,6 +4,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 
 #include <yaml-cpp/yaml.h>
@@ -118,6 +119,32 @@ LoadedParameters loadParameters(const std::string& config,
   YAML::Node root(YAML::NodeType::Map);
   applyOverrides(root, overrides);
   return parametersFromYaml(root, ".");
+}
+
+LoadedParameters loadParametersFor(const MessageSource& recording, const std::string& config,
+                                   std::vector<std::string> overrides) {
+  if (const std::optional<BiasConfiguration> biases = recording.biases()) {
+    std::string text = "biases:={";
+    for (const auto& [name, bias] :
+         {std::pair("DiffBn", biases->diff), {"OnBn", biases->on}, {"OffBn", biases->off}}) {
+      text += std::string(name) + "_coarse: " + std::to_string(bias.coarse) + ", " + name +
+              "_fine: " + std::to_string(bias.fine) + ", ";
+    }
+    overrides.insert(overrides.begin(), text + "coarse_convention: libcaer}");
+  }
+  LoadedParameters parameters = loadParameters(config, overrides);
+  DeblurParameters& deblur = parameters.deblur;
+  if (recording.knowsExposures()) {
+    if (deblur.stamp_reference != ExposureInstant::kMid ||
+        deblur.exposure_source != ExposureSource::kTopic) {
+      parameters.warnings.emplace_back(
+          "the recording has the exposure of each frame: stamp_reference and exposure_source are "
+          "not used");
+    }
+    deblur.stamp_reference = ExposureInstant::kMid;
+    deblur.exposure_source = ExposureSource::kTopic;
+  }
+  return parameters;
 }
 
 void printWarnings(const LoadedParameters& parameters) {

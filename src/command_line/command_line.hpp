@@ -12,7 +12,7 @@
 #include <boost/program_options.hpp>
 
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/ros/bag_reader.hpp"
+#include "fast_edi/ros/message_source.hpp"
 #include "fast_edi/ros/topic_names.hpp"
 
 namespace fast_edi {
@@ -68,6 +68,12 @@ void requireFree(const std::string& path, bool overwrite);
 /// \throws ParameterError
 LoadedParameters loadParameters(const std::string& config,
                                 const std::vector<std::string>& overrides);
+
+/// Parameters for a recording that may tell some of them itself: biases become thresholds unless
+/// those are given, and measured exposures are used as they are.
+/// \throws ParameterError
+LoadedParameters loadParametersFor(const MessageSource& recording, const std::string& config,
+                                   std::vector<std::string> overrides);
 
 void printWarnings(const LoadedParameters& parameters);
 

@@ -73,7 +73,7 @@ void printSummary(std::ostream& out, const BagDeblurReport& report) {
   out.precision(precision);
 }
 
-BagDeblurrer::BagDeblurrer(BagReader& reader, BagWriter* writer, const TopicNames& topics,
+BagDeblurrer::BagDeblurrer(MessageSource& reader, BagWriter* writer, const TopicNames& topics,
                            const LoadedParameters& parameters, Progress progress)
     : reader_(reader),
       writer_(writer),
@@ -97,7 +97,7 @@ BagDeblurReport BagDeblurrer::run() {
       ++report_.malformed_messages;
     }
     writeOutputs(message.time);
-    progress_(reader_.position(), reader_.messageCount());
+    progress_(reader_.position(), reader_.length());
   }
   pipeline_.finish();
   writeOutputs(report_.last_record_time);

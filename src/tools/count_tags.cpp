@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -21,9 +22,10 @@
 #include "fast_edi/ros/bag_deserialise.hpp"
 #include "fast_edi/ros/bag_error.hpp"
 #include "fast_edi/ros/bag_pipeline.hpp"
-#include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/image_pixels.hpp"
 #include "fast_edi/ros/message_conversion.hpp"
+#include "fast_edi/ros/message_source.hpp"
+#include "fast_edi/ros/open_messages.hpp"
 #include "fast_edi/ros/progress_bar.hpp"
 #include "fast_edi/ros/topic_names.hpp"
 #include "fast_edi/tags/tag_detector.hpp"
@@ -202,11 +204,12 @@ class TagCounter {
 };
 
 int run(const Arguments& arguments) {
+  const std::unique_ptr<fast_edi::MessageSource> recording = fast_edi::openMessages(arguments.bag);
+  fast_edi::MessageSource& reader = *recording;
   const fast_edi::LoadedParameters parameters =
-      tools::loadParameters(arguments.config, arguments.overrides);
+      tools::loadParametersFor(reader, arguments.config, arguments.overrides);
   tools::printWarnings(parameters);
   TagCounter counter(arguments, parameters);
-  fast_edi::BagReader reader(arguments.bag);
   const std::string faults = fast_edi::checkTopics(arguments.topics, reader.connections());
   if (!faults.empty()) {
     throw fast_edi::BagError(arguments.bag + ": " + faults);
@@ -217,7 +220,7 @@ int run(const Arguments& arguments) {
     fast_edi::BagMessage message;
     while (reader.next(message)) {
       malformed += counter.add(message) ? 0 : 1;
-      bar.update(reader.position(), reader.messageCount());
+      bar.update(reader.position(), reader.length());
     }
     counter.finish();
   }

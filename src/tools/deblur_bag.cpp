@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,8 +14,9 @@
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/ros/bag_deblurrer.hpp"
 #include "fast_edi/ros/bag_error.hpp"
-#include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/bag_writer.hpp"
+#include "fast_edi/ros/message_source.hpp"
+#include "fast_edi/ros/open_messages.hpp"
 #include "fast_edi/ros/progress_bar.hpp"
 #include "fast_edi/ros/topic_names.hpp"
 #include "fast_edi/video/film_writer.hpp"
@@ -123,15 +125,16 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   return true;
 }
 
-void printInterruption(const fast_edi::BagReader& reader, const fast_edi::BagDeblurReport& report) {
+void printInterruption(const fast_edi::MessageSource& reader,
+                       const fast_edi::BagDeblurReport& report) {
   if (report.interrupted) {
     std::cerr << "interrupted by " << (interrupting_signal == SIGINT ? "SIGINT" : "SIGTERM")
-              << " after " << report.messages << " of " << reader.messageCount()
-              << " messages: the output is closed and ends there\n";
+              << " after " << report.messages << " messages (" << reader.position() << " of "
+              << reader.length() << "): the output is closed and ends there\n";
   }
 }
 
-void printDamage(const fast_edi::BagReader& reader, const fast_edi::BagDeblurReport& report,
+void printDamage(const fast_edi::MessageSource& reader, const fast_edi::BagDeblurReport& report,
                  const std::string& input) {
   if (report.damage.empty()) {
     return;
@@ -157,13 +160,15 @@ void printFilm(const fast_edi::FilmReport& film, const std::string& path) {
 }
 
 int run(const Arguments& arguments) {
+  const std::unique_ptr<fast_edi::MessageSource> recording =
+      fast_edi::openMessages(arguments.input);
+  fast_edi::MessageSource& reader = *recording;
   fast_edi::LoadedParameters parameters =
-      tools::loadParameters(arguments.config, arguments.overrides);
+      tools::loadParametersFor(reader, arguments.config, arguments.overrides);
   if (!arguments.video.empty()) {
     parameters.deblur.latent.rate_hz = arguments.film_rate_hz;
   }
   tools::printWarnings(parameters);
-  fast_edi::BagReader reader(arguments.input);
   const std::string faults = fast_edi::checkTopics(arguments.topics, reader.connections());
   if (!faults.empty()) {
     throw fast_edi::BagError(arguments.input + ": " + faults);

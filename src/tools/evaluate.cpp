@@ -7,6 +7,7 @@
 #include <iostream>
 #include <list>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -30,10 +31,11 @@
 #include "fast_edi/evaluation/video_quality.hpp"
 #include "fast_edi/ros/bag_deserialise.hpp"
 #include "fast_edi/ros/bag_error.hpp"
-#include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/event_array.hpp"
 #include "fast_edi/ros/image_pixels.hpp"
 #include "fast_edi/ros/message_conversion.hpp"
+#include "fast_edi/ros/message_source.hpp"
+#include "fast_edi/ros/open_messages.hpp"
 #include "fast_edi/ros/progress_bar.hpp"
 #include "fast_edi/ros/topic_names.hpp"
 
@@ -242,9 +244,9 @@ cv::Mat toMono8(const sensor_msgs::Image& message) {
 class TruthFrames {
  public:
   TruthFrames(const std::string& bag, const std::string& topic) {
-    fast_edi::BagReader reader(bag);
+    const std::unique_ptr<fast_edi::MessageSource> reader = fast_edi::openMessages(bag);
     fast_edi::BagMessage message;
-    while (reader.next(message)) {
+    while (reader->next(message)) {
       if (message.connection->topic != topic) {
         continue;
       }
@@ -330,8 +332,14 @@ void printGroups(const std::vector<fast_edi::EvaluationGroup>& groups,
   }
 }
 
-int evaluateBag(const Arguments& arguments, const fast_edi::DeblurParameters& parameters) {
-  fast_edi::BagReader reader(arguments.bag);
+int evaluateBag(const Arguments& arguments) {
+  const std::unique_ptr<fast_edi::MessageSource> recording = fast_edi::openMessages(arguments.bag);
+  fast_edi::MessageSource& reader = *recording;
+  const fast_edi::LoadedParameters loaded =
+      tools::loadParametersFor(reader, arguments.config, arguments.overrides);
+  tools::printWarnings(loaded);
+  fast_edi::prepareReportFolder(arguments.output, arguments.overwrite);
+  const fast_edi::DeblurParameters& parameters = loaded.deblur;
   const std::string faults = fast_edi::checkTopics(arguments.topics, reader.connections());
   if (!faults.empty()) {
     throw fast_edi::BagError(arguments.bag + ": " + faults);
@@ -350,7 +358,7 @@ int evaluateBag(const Arguments& arguments, const fast_edi::DeblurParameters& pa
     fast_edi::BagMessage message;
     while (reader.next(message)) {
       malformed += feed(message, arguments.topics, comparison) ? 0 : 1;
-      bar.update(reader.position(), reader.messageCount());
+      bar.update(reader.position(), reader.length());
     }
     comparison.finish();
   }
@@ -520,17 +528,17 @@ int evaluateVideo(const Arguments& arguments, const fast_edi::DeblurParameters& 
 }
 
 int run(const Arguments& arguments) {
-  const fast_edi::LoadedParameters parameters = loadParameters(arguments);
-  tools::printWarnings(parameters);
   // Run times are those of one thread; results do not depend on how many cores there are.
   cv::setNumThreads(1);
+  if (arguments.sequences.empty() && arguments.video_images == 0) {
+    return evaluateBag(arguments);
+  }
+  const fast_edi::LoadedParameters parameters = loadParameters(arguments);
+  tools::printWarnings(parameters);
   if (arguments.video_images != 0) {
     return evaluateVideo(arguments, parameters.deblur);
   }
   fast_edi::prepareReportFolder(arguments.output, arguments.overwrite);
-  if (arguments.sequences.empty()) {
-    return evaluateBag(arguments, parameters.deblur);
-  }
   const fast_edi::SequenceSet set = fast_edi::sequenceSetFromName(arguments.sequences);
   return set == fast_edi::SequenceSet::kTwelve ? evaluateSequences(arguments, parameters.deblur)
                                                : evaluateSet(arguments, set, parameters.deblur);

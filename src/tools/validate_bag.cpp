@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,9 +22,10 @@
 #include "fast_edi/evaluation/plot.hpp"
 #include "fast_edi/ros/bag_deserialise.hpp"
 #include "fast_edi/ros/bag_error.hpp"
-#include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/event_array.hpp"
 #include "fast_edi/ros/message_conversion.hpp"
+#include "fast_edi/ros/message_source.hpp"
+#include "fast_edi/ros/open_messages.hpp"
 #include "fast_edi/ros/progress_bar.hpp"
 #include "fast_edi/ros/topic_names.hpp"
 #include "fast_edi/validation/recording_validator.hpp"
@@ -80,22 +82,21 @@ struct Assumed {
   fast_edi::DeblurParameters pipeline;
 };
 
-Assumed assumedParameters(const Arguments& arguments) {
+Assumed assumedParameters(const Arguments& arguments, const fast_edi::MessageSource& recording) {
   fast_edi::AssumedParameters assumed;
   assumed.thresholds_given = true;
-  fast_edi::LoadedParameters loaded;
-  if (!arguments.config.empty()) {
-    loaded = fast_edi::parametersFromFile(arguments.config, arguments.overrides);
-  } else {
+  std::vector<std::string> overrides = arguments.overrides;
+  if (arguments.config.empty() && !recording.biases()) {
     YAML::Node root(YAML::NodeType::Map);
-    fast_edi::applyOverrides(root, arguments.overrides);
+    fast_edi::applyOverrides(root, overrides);
     if (!root["contrast_threshold_on"].IsDefined() && !root["biases"].IsDefined()) {
       assumed.thresholds_given = false;
-      root["contrast_threshold_on"] = assumed.thresholds.on;
-      root["contrast_threshold_off"] = assumed.thresholds.off;
+      overrides.push_back("contrast_threshold_on:=" + std::to_string(assumed.thresholds.on));
+      overrides.push_back("contrast_threshold_off:=" + std::to_string(assumed.thresholds.off));
     }
-    loaded = fast_edi::parametersFromYaml(root, ".");
   }
+  const fast_edi::LoadedParameters loaded =
+      tools::loadParametersFor(recording, arguments.config, overrides);
   tools::printWarnings(loaded);
   assumed.thresholds = loaded.deblur.thresholds;
   assumed.stamp_reference = loaded.deblur.stamp_reference;
@@ -147,12 +148,13 @@ struct PassResult {
 PassResult readThrough(const Arguments& arguments, const fast_edi::TopicNames& topics,
                        const std::string& label, fast_edi::RecordingValidator& validator) {
   PassResult result;
-  fast_edi::BagReader reader(arguments.bag);
+  const std::unique_ptr<fast_edi::MessageSource> recording = fast_edi::openMessages(arguments.bag);
+  fast_edi::MessageSource& reader = *recording;
   fast_edi::ProgressBar bar(label);
   fast_edi::BagMessage message;
   while (reader.next(message)) {
     result.malformed += feed(message, topics, validator) ? 0 : 1;
-    bar.update(reader.position(), reader.messageCount());
+    bar.update(reader.position(), reader.length());
   }
   result.damage = reader.damage();
   return result;
@@ -207,13 +209,13 @@ int run(const Arguments& arguments) {
   if (!arguments.output.empty()) {
     tools::requireFree(curvePath(arguments), arguments.overwrite);
   }
-  const Assumed assumed = assumedParameters(arguments);
+  std::unique_ptr<fast_edi::MessageSource> recording = fast_edi::openMessages(arguments.bag);
+  const Assumed assumed = assumedParameters(arguments, *recording);
   fast_edi::TopicNames topics = arguments.topics;
   topics.output = "/validate_bag";  // writes none: topics of deblurred frames may be there already
   {
-    const fast_edi::BagReader reader(arguments.bag);
-    topics = fast_edi::guessTopics(topics, reader.connections());
-    const std::string faults = fast_edi::checkTopics(topics, reader.connections());
+    topics = fast_edi::guessTopics(topics, recording->connections());
+    const std::string faults = fast_edi::checkTopics(topics, recording->connections());
     if (!faults.empty()) {
       fast_edi::printFinding(
           std::cout, {"topics", "event arrays, frames and exposures (std_msgs/Int32)", faults,

@@ -15,8 +15,8 @@
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/core/deblur_counters.hpp"
 #include "fast_edi/ros/bag_pipeline.hpp"
-#include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/bag_writer.hpp"
+#include "fast_edi/ros/message_source.hpp"
 #include "fast_edi/ros/topic_names.hpp"
 
 namespace fast_edi {
@@ -52,7 +52,7 @@ class BagDeblurrer {
   /// \param reader must outlive this object
   /// \param writer must outlive this object; null: no bag is written
   /// \throws std::invalid_argument for parameters out of range
-  BagDeblurrer(BagReader& reader, BagWriter* writer, const TopicNames& topics,
+  BagDeblurrer(MessageSource& reader, BagWriter* writer, const TopicNames& topics,
                const LoadedParameters& parameters, Progress progress);
 
   /// Shows every output to \p handler as well, which may throw: run() then ends with that.
@@ -72,7 +72,7 @@ class BagDeblurrer {
  private:
   void writeOutputs(const ros::Time& record_time);
 
-  BagReader& reader_;
+  MessageSource& reader_;
   BagWriter* const writer_;
   const std::string image_topic_;
   const std::string camera_info_topic_;

@@ -11,7 +11,7 @@
 #include <boost/make_shared.hpp>
 #include <boost/shared_ptr.hpp>
 
-#include "fast_edi/ros/bag_reader.hpp"
+#include "fast_edi/ros/message_source.hpp"
 
 namespace fast_edi {
 namespace bag_deserialise_detail {

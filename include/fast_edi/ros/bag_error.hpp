@@ -1,14 +1,10 @@
 /// \file
 #pragma once
 
-#include <stdexcept>
+#include "fast_edi/recording/recording_error.hpp"
 
 namespace fast_edi {
 
-/// A bag that cannot be read or written at all. what() names the file and the reason.
-class BagError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+using BagError = RecordingError;
 
 }  // namespace fast_edi

@@ -15,6 +15,7 @@
 #include <ros/datatypes.h>
 #include <boost/shared_ptr.hpp>
 
+#include "fast_edi/recording/recording.hpp"
 #include "fast_edi/ros/bag_chunk.hpp"
 #include "fast_edi/ros/bag_record.hpp"
 
@@ -31,11 +32,7 @@ struct BagConnection {
   std::uint64_t messages = 0;               ///< in the index; some may prove unreadable
 };
 
-/// A place that could not be read.
-struct BagDamage {
-  std::uint64_t offset = 0;  ///< byte in the file
-  std::string what;
-};
+using BagDamage = RecordingDamage;
 
 /// Where a chunk's data lie.
 struct BagChunk {

@@ -11,8 +11,8 @@
 
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/core/deblurrer.hpp"
-#include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/message_frame_sink.hpp"
+#include "fast_edi/ros/message_source.hpp"
 #include "fast_edi/ros/topic_names.hpp"
 
 namespace fast_edi {

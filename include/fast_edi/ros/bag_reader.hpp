@@ -21,18 +21,11 @@
 #include "fast_edi/ros/bag_chunk.hpp"
 #include "fast_edi/ros/bag_index.hpp"
 #include "fast_edi/ros/bag_record.hpp"
+#include "fast_edi/ros/message_source.hpp"
 
 namespace fast_edi {
 
-/// A message; `data` is valid until the next call of next().
-struct BagMessage {
-  const BagConnection* connection = nullptr;
-  ros::Time time;  ///< record time
-  const std::uint8_t* data = nullptr;
-  std::uint32_t size = 0;
-};
-
-class BagReader {
+class BagReader : public MessageSource {
  public:
   static constexpr std::size_t kMaxCachedBytes = std::size_t{64} << 20;
 
@@ -42,20 +35,23 @@ class BagReader {
 
   /// The next message in record-time order; false at the end. What cannot be read is skipped and
   /// noted in damage().
-  bool next(BagMessage& message);
+  bool next(BagMessage& message) override;
 
-  const std::map<std::uint32_t, BagConnection>& connections() const { return index_.connections; }
+  const std::map<std::uint32_t, BagConnection>& connections() const override {
+    return index_.connections;
+  }
   /// Damage found so far; all of it once next() has returned false.
-  const std::vector<BagDamage>& damage() const { return index_.damage; }
+  const std::vector<BagDamage>& damage() const override { return index_.damage; }
   /// Messages found.
   std::uint64_t messageCount() const { return index_.entries.size(); }
   /// Messages that next() has come by, readable or not.
-  std::uint64_t position() const { return position_; }
+  std::uint64_t position() const override { return position_; }
+  std::uint64_t length() const override { return messageCount(); }
   /// From the first record time to the last.
   ros::Duration duration() const;
   /// Of the first chunk: "none", "bz2" or "lz4".
-  std::string compression() const;
-  std::uint64_t fileSize() const { return file_.size(); }
+  std::string compression() const override;
+  std::uint64_t fileSize() const override { return file_.size(); }
 
  private:
   struct CachedChunk {

@@ -9,7 +9,7 @@
 #include <ros/time.h>
 #include <rosbag/bag.h>
 
-#include "fast_edi/ros/bag_reader.hpp"
+#include "fast_edi/ros/message_source.hpp"
 
 namespace fast_edi {
 

@@ -1,0 +1,23 @@
+/// \file
+/// Recordings by their content: what a file is called does not matter.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "fast_edi/recording/recording.hpp"
+
+namespace fast_edi {
+
+enum class RecordingFormat { kUnknown, kRosbag, kAedat4 };
+
+/// By the first bytes of the file.
+/// \throws RecordingError when \p path cannot be read
+RecordingFormat formatOf(const std::string& path);
+
+/// The reader for a recording that is no rosbag; null when its format is not known, or rosbag,
+/// whose reader needs ROS (see openMessages()).
+/// \throws RecordingError when the file cannot be read at all
+std::unique_ptr<Recording> openRecording(const std::string& path);
+
+}  // namespace fast_edi

@@ -1,0 +1,43 @@
+#include "fast_edi/recording/open_recording.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+#include "fast_edi/recording/aedat4_reader.hpp"
+#include "fast_edi/recording/byte_source.hpp"
+
+namespace fast_edi {
+namespace {
+
+constexpr std::string_view kRosbagMagic = "#ROSBAG";
+constexpr std::string_view kAedat4Magic = "#!AER-DAT4";
+
+bool beginsWith(const FileSource& file, std::string_view magic) {
+  std::vector<std::uint8_t> scratch;
+  const std::uint8_t* bytes = file.read(0, magic.size(), scratch);
+  return bytes != nullptr && std::memcmp(bytes, magic.data(), magic.size()) == 0;
+}
+
+}  // namespace
+
+RecordingFormat formatOf(const std::string& path) {
+  const FileSource file(path);
+  if (beginsWith(file, kRosbagMagic)) {
+    return RecordingFormat::kRosbag;
+  }
+  return beginsWith(file, kAedat4Magic) ? RecordingFormat::kAedat4 : RecordingFormat::kUnknown;
+}
+
+std::unique_ptr<Recording> openRecording(const std::string& path) {
+  switch (formatOf(path)) {
+    case RecordingFormat::kAedat4:
+      return std::make_unique<Aedat4Reader>(path);
+    case RecordingFormat::kRosbag:
+    case RecordingFormat::kUnknown:
+      break;
+  }
+  return nullptr;
+}
+
+}  // namespace fast_edi

@@ -1,0 +1,272 @@
+/// \file
+/// `convert_recording`: a recording of any format as a bag, as AEDAT4, or its frames as pictures.
+
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <boost/program_options.hpp>
+
+#include "command_line.hpp"
+#include "fast_edi/recording/aedat4_writer.hpp"
+#include "fast_edi/recording/open_recording.hpp"
+#include "fast_edi/recording/recording_error.hpp"
+#include "fast_edi/ros/bag_recording.hpp"
+#include "fast_edi/ros/bag_writer.hpp"
+#include "fast_edi/ros/message_source.hpp"
+#include "fast_edi/ros/open_messages.hpp"
+#include "fast_edi/ros/progress_bar.hpp"
+#include "fast_edi/ros/topic_names.hpp"
+#include "fast_edi/video/frame_folder.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+namespace tools = fast_edi::tools;
+using tools::kDone;
+using tools::kInputIncomplete;
+using tools::kInterrupted;
+
+constexpr double kMaxArray_ms = 1000.0;
+
+/// The signal that asked to stop, 0 before. The only thing that a signal's handler may touch.
+volatile std::sig_atomic_t interrupting_signal = 0;
+
+extern "C" void noteSignal(int signal) {
+  interrupting_signal = signal;
+}
+
+void handleSignals() {
+  struct sigaction stop = {};
+  stop.sa_handler = noteSignal;
+  stop.sa_flags = SA_RESETHAND;  // a second one ends the program at once
+  sigaction(SIGINT, &stop, nullptr);
+  sigaction(SIGTERM, &stop, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+struct Arguments {
+  std::string input;
+  std::string output;
+  std::string compression = "lz4";
+  double array_ms = 0.0;
+  fast_edi::TopicNames topics;
+  bool overwrite = false;
+};
+
+/// \return false when help was asked for and given
+bool parseArguments(int argc, char** argv, Arguments& arguments) {
+  po::options_description visible("Options");
+  visible.add_options()("help,h", "print this")(
+      "array-ms",
+      po::value(&arguments.array_ms)->default_value(arguments.array_ms)->value_name("MS"),
+      "length of a bag's event arrays, 0..1000; 0: as the recording has its packets")(
+      "compression",
+      po::value(&arguments.compression)->default_value(arguments.compression)->value_name("KIND"),
+      "none, lz4, bz2 (bag alone), zstd (AEDAT4 alone)");
+  tools::addForceOption(visible, arguments.overwrite);
+  tools::addTopicOptions(visible, arguments.topics);
+  const tools::HelpText text = {
+      "Usage: convert_recording IN OUT.bag       what davis_ros_driver would have recorded\n"
+      "       convert_recording IN OUT.aedat4    for iniVation's DV\n"
+      "       convert_recording IN FOLDER        frames as PNG, and frames.csv with their times\n\n"
+      "IN is a rosbag or AEDAT4, told by its content.\n"
+      "Bags have /dvs/events, /dvs/image_raw stamped in the middle of the exposure, the\n"
+      "exposure's length on /dvs/exposure behind each frame, and /dvs/imu.\n",
+      "0 done; 1 failed, no output; 2 the input was cut short or damaged: all of it that could be\n"
+      "read is in the output; 130, 143 interrupted by Ctrl-C or SIGTERM."};
+  std::vector<std::string> words;
+  auto values = tools::readCommandLine(argc, argv, visible, text, &words);
+  if (!values) {
+    return false;
+  }
+  po::notify(*values);
+  if (words.size() != 2) {
+    throw po::error("expected IN and OUT");
+  }
+  arguments.input = words[0];
+  arguments.output = words[1];
+  if (!(arguments.array_ms >= 0.0 && arguments.array_ms <= kMaxArray_ms)) {
+    throw po::error("--array-ms " + std::to_string(arguments.array_ms) + ": expected 0..1000");
+  }
+  return true;
+}
+
+std::string extensionOf(const std::string& path) {
+  return fs::path(path).extension().string();
+}
+
+/// What was converted.
+struct Counts {
+  std::uint64_t events = 0;
+  std::uint64_t frames = 0;
+  std::uint64_t exposures = 0;
+  std::uint64_t samples = 0;
+  std::uint64_t left_out = 0;
+  bool interrupted = false;
+};
+
+void count(const fast_edi::RecordingItem& item, Counts& counts) {
+  if (const auto* events = std::get_if<fast_edi::RecordedEvents>(&item.content)) {
+    counts.events += events->count;
+  } else if (const auto* frame = std::get_if<fast_edi::RecordedFrame>(&item.content)) {
+    ++counts.frames;
+    counts.exposures += frame->exposure ? 1 : 0;
+  } else if (std::holds_alternative<fast_edi::RecordedImu>(item.content)) {
+    ++counts.samples;
+  }
+}
+
+/// Any recording, item by item.
+std::unique_ptr<fast_edi::Recording> openItems(const Arguments& arguments) {
+  if (fast_edi::formatOf(arguments.input) == fast_edi::RecordingFormat::kRosbag) {
+    return std::make_unique<fast_edi::BagRecording>(arguments.input, arguments.topics);
+  }
+  std::unique_ptr<fast_edi::Recording> recording = fast_edi::openRecording(arguments.input);
+  if (!recording) {
+    fast_edi::openMessages(arguments.input);  // throws, and says what is read
+  }
+  return recording;
+}
+
+void refuseInputAsOutput(const Arguments& arguments) {
+  std::error_code ignored;  // one that does not exist is not the same
+  if (fs::equivalent(arguments.input, arguments.output, ignored)) {
+    throw fast_edi::RecordingError("cannot write " + arguments.output + ": it is the input");
+  }
+}
+
+template <typename Use>
+Counts forEach(fast_edi::Recording& recording, Use use) {
+  Counts counts;
+  fast_edi::ProgressBar bar("converting");
+  fast_edi::RecordingItem item;
+  while (!(counts.interrupted = interrupting_signal != 0) && recording.next(item)) {
+    count(item, counts);
+    use(item);
+    bar.update(recording.position(), recording.length());
+  }
+  return counts;
+}
+
+int finish(const Arguments& arguments, const Counts& counts,
+           const std::vector<fast_edi::RecordingDamage>& damage) {
+  std::cout << counts.events << " events, " << counts.frames << " frames, " << counts.exposures
+            << " of them with their exposure, " << counts.samples << " IMU samples\n"
+            << "written: " << arguments.output << "\n"
+            << std::flush;
+  if (counts.left_out > 0) {
+    std::cerr << "warning: " << counts.left_out << " messages or frames were left out\n";
+  }
+  tools::printDamage(arguments.input, damage);
+  if (counts.interrupted) {
+    std::cerr << "interrupted: the output is complete up to there\n";
+    return kInterrupted + interrupting_signal;
+  }
+  return damage.empty() && counts.left_out == 0 ? kDone : kInputIncomplete;
+}
+
+int toAedat4(const Arguments& arguments) {
+  const std::string& kind = arguments.compression;
+  if (kind != "none" && kind != "lz4" && kind != "zstd") {
+    throw po::error("--compression " + kind + ": expected none, lz4 or zstd for AEDAT4");
+  }
+  const auto compression = kind == "lz4"    ? fast_edi::Aedat4Compression::kLz4
+                           : kind == "zstd" ? fast_edi::Aedat4Compression::kZstd
+                                            : fast_edi::Aedat4Compression::kNone;
+  const std::unique_ptr<fast_edi::Recording> recording = openItems(arguments);
+  fast_edi::Aedat4Writer writer(arguments.output, recording->streams(), compression,
+                                arguments.overwrite);
+  Counts counts =
+      forEach(*recording, [&](const fast_edi::RecordingItem& item) { writer.write(item); });
+  writer.close();
+  if (const auto* bag = dynamic_cast<const fast_edi::BagRecording*>(recording.get())) {
+    counts.left_out += bag->malformed();
+  }
+  return finish(arguments, counts, recording->damage());
+}
+
+int toFolder(const Arguments& arguments) {
+  const std::unique_ptr<fast_edi::Recording> recording = openItems(arguments);
+  fast_edi::FrameFolder folder(arguments.output, arguments.overwrite);
+  Counts counts = forEach(*recording, [&](const fast_edi::RecordingItem& item) {
+    const auto* frame = std::get_if<fast_edi::RecordedFrame>(&item.content);
+    if (frame == nullptr) {
+      return;
+    }
+    sensor_msgs::Image image;
+    image.header.stamp.fromNSec(static_cast<std::uint64_t>(frame->stamp_ns));
+    image.width = static_cast<std::uint32_t>(frame->size.width);
+    image.height = static_cast<std::uint32_t>(frame->size.height);
+    image.encoding = frame->encoding;
+    image.step = static_cast<std::uint32_t>(frame->bytes) / image.height;
+    image.data.assign(frame->pixels, frame->pixels + frame->bytes);
+    folder.add(image, frame->exposure);
+  });
+  folder.close();
+  counts.left_out += folder.leftOut();
+  return finish(arguments, counts, recording->damage());
+}
+
+int toBag(const Arguments& arguments) {
+  if (!fast_edi::isKnownCompression(arguments.compression)) {
+    throw po::error("--compression " + arguments.compression +
+                    ": expected none, lz4 or bz2 for a bag");
+  }
+  const auto array_ns = static_cast<std::int64_t>(
+      arguments.array_ms * static_cast<double>(fast_edi::kNanosecondsPerMillisecond));
+  const std::unique_ptr<fast_edi::MessageSource> source =
+      fast_edi::openMessages(arguments.input, array_ns);
+  fast_edi::BagWriter writer(arguments.output, arguments.input, arguments.compression,
+                             arguments.overwrite);
+  std::uint64_t messages = 0;
+  bool interrupted = false;
+  {
+    fast_edi::ProgressBar bar("converting");
+    fast_edi::BagMessage message;
+    while (!(interrupted = interrupting_signal != 0) && source->next(message)) {
+      writer.copy(message);
+      ++messages;
+      bar.update(source->position(), source->length());
+    }
+  }
+  writer.close();
+  std::cout << messages << " messages\nwritten: " << arguments.output << "\n" << std::flush;
+  tools::printDamage(arguments.input, source->damage());
+  if (interrupted) {
+    std::cerr << "interrupted: the output is complete up to there\n";
+    return kInterrupted + interrupting_signal;
+  }
+  return source->damage().empty() ? kDone : kInputIncomplete;
+}
+
+int run(const Arguments& arguments) {
+  refuseInputAsOutput(arguments);
+  const std::string extension = extensionOf(arguments.output);
+  if (extension == ".bag") {
+    return toBag(arguments);
+  }
+  if (extension == ".aedat4") {
+    return toAedat4(arguments);
+  }
+  if (!extension.empty() && !fs::is_directory(arguments.output)) {
+    throw po::error(arguments.output + ": expected OUT.bag, OUT.aedat4 or a folder");
+  }
+  return toFolder(arguments);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  handleSignals();
+  return tools::runTool("convert_recording", [argc, argv] {
+    Arguments arguments;
+    return parseArguments(argc, argv, arguments) ? run(arguments) : kDone;
+  });
+}
