@@ -13,9 +13,10 @@ std::unique_ptr<MessageSource> openMessages(const std::string& path, std::int64_
   }
   std::unique_ptr<Recording> recording = openRecording(path);
   if (!recording) {
-    throw RecordingError(path +
-                         " is no recording of a known format: it begins neither with \"#ROSBAG "
-                         "V2.0\" (rosbag) nor with \"#!AER-DAT4.0\" (AEDAT4)");
+    throw RecordingError(
+        path +
+        " is no bag, nor another recording that can be read: it begins neither with \"#ROSBAG "
+        "V2.0\" (rosbag) nor with \"#!AER-DAT4.0\" (AEDAT4)");
   }
   return std::make_unique<RecordingMessages>(std::move(recording), array_ns);
 }

@@ -14,6 +14,7 @@
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/ros/bag_deblurrer.hpp"
 #include "fast_edi/ros/bag_error.hpp"
+#include "fast_edi/ros/bag_reader.hpp"
 #include "fast_edi/ros/bag_writer.hpp"
 #include "fast_edi/ros/message_source.hpp"
 #include "fast_edi/ros/open_messages.hpp"
@@ -128,9 +129,13 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
 void printInterruption(const fast_edi::MessageSource& reader,
                        const fast_edi::BagDeblurReport& report) {
   if (report.interrupted) {
+    // Other recordings than bags do not tell how many messages they make.
+    const std::string of_all = dynamic_cast<const fast_edi::BagReader*>(&reader) != nullptr
+                                   ? " of " + std::to_string(reader.length())
+                                   : std::string();
     std::cerr << "interrupted by " << (interrupting_signal == SIGINT ? "SIGINT" : "SIGTERM")
-              << " after " << report.messages << " messages (" << reader.position() << " of "
-              << reader.length() << "): the output is closed and ends there\n";
+              << " after " << report.messages << of_all
+              << " messages: the output is closed and ends there\n";
   }
 }
 
