@@ -12,14 +12,20 @@ constexpr float kFewestEvents = 6.0F;
 constexpr float kOtherPolarity = 0.25F;
 /// Half of the neighbourhood's width [px].
 constexpr int kRadius = 3;
-/// A pixel with this part of the events is as busy as the one that is looked at.
-constexpr float kAsBusy = 1.0F / 3.0F;
+/// A pixel whose level changes by this part of that of the one that is looked at changes alike.
+constexpr float kAlike = 1.0F / 3.0F;
 /// Most of such pixels in the neighbourhood, itself included: a column, or a group of 2 x 3.
-constexpr int kMostAsBusy = 2 * kRadius + 1;
+constexpr int kMostAlike = 2 * kRadius + 1;
 /// What the change may exceed the range of the frame by: blur narrows that [natural log].
 constexpr float kBeyondRange_log = 1.5F;
 /// Keeps black from making every range a large one [8-bit DN].
 constexpr float kLevelFloor_dn = 2.0F;
+
+/// What the events of a pixel add up to [natural log].
+float changeOf(const ExposureEvents& events, std::size_t pixel) {
+  return std::fabs(static_cast<float>(events.thresholds.on) * events.on(pixel) -
+                   static_cast<float>(events.thresholds.off) * events.off(pixel));
+}
 
 }  // namespace
 
@@ -29,8 +35,8 @@ bool HotPixelFilter::isHot(int x, int y, const float* level_dn, const float* cou
                            const ExposureEvents& events) const {
   const auto width = static_cast<std::size_t>(size_.width);
   const std::size_t pixel = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-  const float busy = kAsBusy * count[pixel];
-  int as_busy = 0;
+  const float change = changeOf(events, pixel);
+  int alike = 0;
   float lowest = level_dn[pixel];
   float highest = lowest;
   for (int row = std::max(y - kRadius, 0); row <= std::min(y + kRadius, size_.height - 1); ++row) {
@@ -38,17 +44,17 @@ bool HotPixelFilter::isHot(int x, int y, const float* level_dn, const float* cou
     for (int column = std::max(x - kRadius, 0); column <= std::min(x + kRadius, size_.width - 1);
          ++column) {
       const std::size_t other = begin + static_cast<std::size_t>(column);
-      as_busy += count[other] >= busy ? 1 : 0;
+      const bool is_alike =
+          changeOf(events, other) >= kAlike * change || count[other] >= count[pixel];
+      alike += is_alike ? 1 : 0;
       lowest = std::min(lowest, level_dn[other]);
       highest = std::max(highest, level_dn[other]);
     }
-    if (as_busy > kMostAsBusy) {
+    if (alike > kMostAlike) {
       return false;
     }
   }
   const float range = std::log((highest + kLevelFloor_dn) / (lowest + kLevelFloor_dn));
-  const float change = std::fabs(static_cast<float>(events.thresholds.on) * events.on(pixel) -
-                                 static_cast<float>(events.thresholds.off) * events.off(pixel));
   return change > range + kBeyondRange_log;
 }
 

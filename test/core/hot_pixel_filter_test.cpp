@@ -136,6 +136,18 @@ TEST(HotPixelFilter, ALampThatStopsWithinTheExposureIsNone) {
   EXPECT_EQ(scene.find(filter), 0U);
 }
 
+TEST(HotPixelFilter, LampsThatFlickerDoNotHideThem) {
+  Scene scene;
+  for (std::size_t i = 0; i < kSize.pixelCount(); ++i) {
+    scene.counts[2 * i] = 6;
+    scene.counts[2 * i + 1] = static_cast<std::uint16_t>(6 + i % 3);
+  }
+  scene.counts[2 * Scene::index(10, 10)] = 6;
+  scene.counts[2 * Scene::index(10, 10) + 1] = 6 + kHotEvents;
+  HotPixelFilter filter(kSize);
+  EXPECT_EQ(scene.find(filter), 1U);
+}
+
 TEST(HotPixelFilter, AFlickeringPixelIsNone) {
   Scene scene;
   scene.add(10, 10, 40, 40);

@@ -7,10 +7,12 @@
 /// shows anywhere near it. A pixel is hot when all of this holds:
 ///
 /// - it has at least 6 events, at most a quarter of them of the other polarity;
-/// - few pixels of the 7 x 7 about it have a third of its events or more: seven, as many as a
-///   column of hot pixels has there. The edge of something that moves has more;
-/// - |c_on n_on - c_off n_off|, the change of log intensity over the exposure, exceeds the range of
-///   the frame's log intensity over the same 7 x 7 pixels by more than 1.5.
+/// - its events add up to |c_on n_on - c_off n_off|, a change of log intensity that exceeds the
+/// range
+///   of the frame's log intensity over the 7 x 7 pixels about it by more than 1.5;
+/// - few pixels of these 7 x 7 change by a third of that, or have as many events as it: seven, as
+///   many as a column of hot pixels has there. The edge of something that moves has more; lamps
+///   that flicker give events everywhere, but these add up to little.
 ///
 /// Events of a true edge, however strong, change the intensity between levels that the frame shows
 /// beside it.
