@@ -34,7 +34,10 @@ class SearchingEdi {
 
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence) {
     const auto start = Clock::now();
-    stream_.take(events, size, sequence);
+    const EventMapping& mapping = parameters_.event_mapping;
+    mapped_.assign(events.data, events.data + events.count * kWireEventBytes);
+    mapping.apply(mapped_.data(), events.count, size);
+    stream_.take({mapped_.data(), events.count}, mapping.apply(size), sequence);
     spent_ms_ += millisecondsSince(start);
   }
 
@@ -97,6 +100,7 @@ class SearchingEdi {
   DeblurParameters parameters_;
   ContrastSearchOptions options_;
   DeblurCounters counters_;
+  std::vector<std::uint8_t> mapped_;  ///< the last array of events
   EventStream stream_;
   double spent_ms_ = 0.0;
 };

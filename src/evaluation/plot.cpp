@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include <opencv2/imgproc.hpp>
+
+#include "fast_edi/core/number_text.hpp"
 
 namespace fast_edi {
 namespace {
@@ -37,9 +38,8 @@ void write(cv::Mat& canvas, const std::string& text, cv::Point at,
 }
 
 std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
+  constexpr int kDigits = 4;
+  return roundedText(value, kDigits);
 }
 
 /// The drawing area and the meaning of its vertical axis.

@@ -1,12 +1,12 @@
 #include "fast_edi/evaluation/trajectory_plot.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
+
+#include "fast_edi/core/number_text.hpp"
 
 namespace fast_edi {
 namespace {
@@ -62,9 +62,8 @@ void drawGrid(const TopView& view, cv::Mat& canvas) {
   const double range_m = (kSidePx - 2 * kMarginPx) / view.px_per_m;
   const double step_m = gridStep(range_m);
   const auto label = [](double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.4g", value);
-    return std::string(text.data());
+    constexpr int kDigits = 4;
+    return roundedText(value, kDigits);
   };
   const Eigen::Vector2d first = (view.range.min() / step_m).array().ceil() * step_m;
   for (double x = first.x(); x <= view.range.min().x() + range_m; x += step_m) {

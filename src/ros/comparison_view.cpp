@@ -18,13 +18,17 @@ void darken(std::uint8_t& channel) {
 
 }  // namespace
 
-void ComparisonView::addEvents(const WireEvents& events) {
+void ComparisonView::addEvents(const WireEvents& events, SensorSize size,
+                               const EventMapping& mapping) {
   const WireEvents recent =
       events.count > kMaxEvents ? events.from(events.count - kMaxEvents) : events;
   if (recent.empty()) {
     return;
   }
   arrays_.emplace_back(recent.data, recent.data + recent.count * kWireEventBytes);
+  if (!mapping.isIdentity()) {
+    mapping.apply(arrays_.back().data(), recent.count, size);
+  }
   event_count_ += recent.count;
   while (event_count_ > kMaxEvents) {
     event_count_ -= arrays_.front().size() / kWireEventBytes;

@@ -10,6 +10,7 @@
 #include <ros/transport_hints.h>
 
 #include "fast_edi/core/contrast_from_bias.hpp"
+#include "fast_edi/core/number_text.hpp"
 #include "fast_edi/ros/bias_update.hpp"
 #include "fast_edi/ros/message_conversion.hpp"
 #include "fast_edi/ros/parameter_loading.hpp"
@@ -121,8 +122,8 @@ void DeblurNode::configure() {
 
 void DeblurNode::announceContrast() const {
   const ContrastThresholds& thresholds = parameters_.deblur.thresholds;
-  ROS_INFO_STREAM(name_ << ": contrast thresholds ON " << thresholds.on << ", OFF "
-                        << thresholds.off << " from " << parameters_.contrast_origin);
+  ROS_INFO_STREAM(name_ << ": contrast thresholds ON " << numberText(thresholds.on) << ", OFF "
+                        << numberText(thresholds.off) << " from " << parameters_.contrast_origin);
   for (const std::string& warning : contrastWarnings(thresholds)) {
     ROS_WARN_STREAM(name_ << ": " << warning);
   }
@@ -231,7 +232,8 @@ void DeblurNode::receiveEvents(const WireEvents& events, SensorSize size, std::u
     message_arrived_ns_ = arrived_ns;
     totals_.last_events_ns = callback_start_ns_;
     if (comparison_publisher_.getNumSubscribers() > 0) {
-      comparison_.addEvents(events);  // first: these events may close the frame they belong to
+      // First: these events may close the frame that they belong to.
+      comparison_.addEvents(events, size, parameters_.deblur.event_mapping);
     } else {
       comparison_.clear();
     }
@@ -287,11 +289,11 @@ void DeblurNode::receiveExposure(const std_msgs::Int32ConstPtr& message) {
 void DeblurNode::receiveBiasUpdate(const dynamic_reconfigure::ConfigConstPtr& message) {
   whileListening([&] {
     try {
-      LoadedParameters next = withDriverBiases(message);
-      driver_biases_ = message;
+      LoadedParameters next = withDriverBiases(live_->loaded(), message);
       if (next.deblur.thresholds != parameters_.deblur.thresholds) {
         putInForce(std::move(next));
       }
+      driver_biases_ = message;
     } catch (const std::invalid_argument& error) {
       ++totals_.bias_updates_refused;
       totals_.bias_refusal = error.what();
@@ -299,12 +301,11 @@ void DeblurNode::receiveBiasUpdate(const dynamic_reconfigure::ConfigConstPtr& me
   });
 }
 
-/// The parameters as set, with thresholds from the driver's biases where these have a say.
+/// The same parameters with thresholds from the driver's biases where these have a say.
 /// \param biases may be null
 /// \throws std::invalid_argument when there is no threshold for them
 LoadedParameters DeblurNode::withDriverBiases(
-    const dynamic_reconfigure::ConfigConstPtr& biases) const {
-  LoadedParameters parameters = live_->loaded();
+    LoadedParameters parameters, const dynamic_reconfigure::ConfigConstPtr& biases) const {
   if (biases) {
     const auto thresholds = thresholdsAfterBiasUpdate(parameters, *biases);
     if (thresholds) {
@@ -325,25 +326,45 @@ void DeblurNode::putInForce(LoadedParameters parameters) {
   }
 }
 
+/// Stores \p next once it is in force. Biases of the driver that say nothing about a threshold that
+/// is theirs now are dropped.
+void DeblurNode::putInForce(LiveParameters next) {
+  std::string refusal;
+  LoadedParameters parameters;
+  try {
+    parameters = withDriverBiases(next.loaded(), driver_biases_);
+  } catch (const std::invalid_argument& error) {
+    refusal = error.what();
+    parameters = next.loaded();
+  }
+  putInForce(std::move(parameters));
+  live_ = std::move(next);
+  if (!refusal.empty()) {
+    ++totals_.bias_updates_refused;
+    totals_.bias_refusal = refusal;
+    driver_biases_.reset();
+  }
+}
+
 LiveParameters::Values DeblurNode::reconfigure(const LiveParameters::Values& wanted) {
   LiveParameters::Values in_force;
   guarded([&] {
-    for (const std::string& refusal : live_->change(wanted)) {
+    LiveParameters next = *live_;
+    for (const std::string& refusal : next.change(wanted)) {
       ++totals_.values_refused;
       totals_.value_refusal = refusal;
       ROS_WARN_STREAM(name_ << ": old value kept: " << refusal);
       last_warning_ns_["values"] = callback_start_ns_;  // the report need not say it again
     }
     ++totals_.reconfigurations;
-    in_force = live_->values();
     try {
-      putInForce(withDriverBiases(driver_biases_));
-    } catch (const std::invalid_argument& error) {
-      ++totals_.bias_updates_refused;
-      totals_.bias_refusal = error.what();
-      driver_biases_.reset();
-      putInForce(live_->loaded());
+      putInForce(std::move(next));
+    } catch (const std::exception& error) {
+      ++totals_.values_refused;
+      totals_.value_refusal = std::string("all values of one request: ") + error.what();
+      ROS_WARN_STREAM(name_ << ": old values kept: " << error.what());
     }
+    in_force = live_->values();
     const std::uint32_t latent_queue = latentQueueFor(parameters_.deblur.latent);
     if (latent_queue > latent_queue_) {
       warnThrottled("latent queue",

@@ -20,28 +20,37 @@ namespace fast_edi {
 namespace {
 
 constexpr int kAsItIs = -1;
-/// As bytes, since OpenCV wants rows of wider numbers to begin at even addresses.
-constexpr int kTwoBytes = CV_8UC2;
 
 /// How OpenCV sees the pixels of an encoding.
 struct Conversion {
   const char* encoding;
-  int type;
+  int samples;
+  int bytes;    ///< of a sample
   int to_grey;  ///< code of cv::cvtColor
   int to_color;
 };
 
 /// OpenCV names Bayer patterns by the second row's second and third pixel.
-constexpr std::array<Conversion, 9> kConversions{{
-    {"mono8", CV_8UC1, kAsItIs, cv::COLOR_GRAY2BGR},
-    {"8UC1", CV_8UC1, kAsItIs, cv::COLOR_GRAY2BGR},
-    {"mono16", kTwoBytes, kAsItIs, cv::COLOR_GRAY2BGR},
-    {"rgb8", CV_8UC3, cv::COLOR_RGB2GRAY, cv::COLOR_RGB2BGR},
-    {"bgr8", CV_8UC3, cv::COLOR_BGR2GRAY, kAsItIs},
-    {"bayer_rggb8", CV_8UC1, cv::COLOR_BayerBG2GRAY, cv::COLOR_BayerBG2BGR},
-    {"bayer_bggr8", CV_8UC1, cv::COLOR_BayerRG2GRAY, cv::COLOR_BayerRG2BGR},
-    {"bayer_gbrg8", CV_8UC1, cv::COLOR_BayerGR2GRAY, cv::COLOR_BayerGR2BGR},
-    {"bayer_grbg8", CV_8UC1, cv::COLOR_BayerGB2GRAY, cv::COLOR_BayerGB2BGR},
+constexpr std::array<Conversion, 19> kConversions{{
+    {"mono8", 1, 1, kAsItIs, cv::COLOR_GRAY2BGR},
+    {"8UC1", 1, 1, kAsItIs, cv::COLOR_GRAY2BGR},
+    {"mono16", 1, 2, kAsItIs, cv::COLOR_GRAY2BGR},
+    {"rgb8", 3, 1, cv::COLOR_RGB2GRAY, cv::COLOR_RGB2BGR},
+    {"bgr8", 3, 1, cv::COLOR_BGR2GRAY, kAsItIs},
+    {"rgba8", 4, 1, cv::COLOR_RGBA2GRAY, cv::COLOR_RGBA2BGR},
+    {"bgra8", 4, 1, cv::COLOR_BGRA2GRAY, cv::COLOR_BGRA2BGR},
+    {"rgb16", 3, 2, cv::COLOR_RGB2GRAY, cv::COLOR_RGB2BGR},
+    {"bgr16", 3, 2, cv::COLOR_BGR2GRAY, kAsItIs},
+    {"rgba16", 4, 2, cv::COLOR_RGBA2GRAY, cv::COLOR_RGBA2BGR},
+    {"bgra16", 4, 2, cv::COLOR_BGRA2GRAY, cv::COLOR_BGRA2BGR},
+    {"bayer_rggb8", 1, 1, cv::COLOR_BayerBG2GRAY, cv::COLOR_BayerBG2BGR},
+    {"bayer_bggr8", 1, 1, cv::COLOR_BayerRG2GRAY, cv::COLOR_BayerRG2BGR},
+    {"bayer_gbrg8", 1, 1, cv::COLOR_BayerGR2GRAY, cv::COLOR_BayerGR2BGR},
+    {"bayer_grbg8", 1, 1, cv::COLOR_BayerGB2GRAY, cv::COLOR_BayerGB2BGR},
+    {"bayer_rggb16", 1, 2, cv::COLOR_BayerBG2GRAY, cv::COLOR_BayerBG2BGR},
+    {"bayer_bggr16", 1, 2, cv::COLOR_BayerRG2GRAY, cv::COLOR_BayerRG2BGR},
+    {"bayer_gbrg16", 1, 2, cv::COLOR_BayerGR2GRAY, cv::COLOR_BayerGR2BGR},
+    {"bayer_grbg16", 1, 2, cv::COLOR_BayerGB2GRAY, cv::COLOR_BayerGB2BGR},
 }};
 
 const Conversion& conversionOf(const std::string& encoding) {
@@ -55,16 +64,19 @@ const Conversion& conversionOf(const std::string& encoding) {
 }
 
 /// The message's own memory; 16 bits are scaled down to 8.
-cv::Mat eightBits(const sensor_msgs::Image& message, int type) {
-  // OpenCV takes a non-const buffer; nobody writes to this one.
-  cv::Mat shared(static_cast<int>(message.height), static_cast<int>(message.width), type,
+cv::Mat eightBits(const sensor_msgs::Image& message, const Conversion& conversion) {
+  // As bytes, since OpenCV wants rows of wider numbers to begin at even addresses. It takes a
+  // non-const buffer; nobody writes to this one.
+  cv::Mat shared(static_cast<int>(message.height), static_cast<int>(message.width),
+                 CV_8UC(conversion.samples * conversion.bytes),
                  const_cast<std::uint8_t*>(message.data.data()), message.step);
-  if (type != kTwoBytes) {
+  if (conversion.bytes == 1) {
     return shared;
   }
   const cv::Mat packed = shared.clone();
   cv::Mat scaled;
-  cv::Mat(packed.size(), CV_16UC1, packed.data).convertTo(scaled, CV_8U, 1.0 / kDn16PerDn8);
+  cv::Mat(packed.size(), CV_16UC(conversion.samples), packed.data)
+      .convertTo(scaled, CV_8U, 1.0 / kDn16PerDn8);
   return scaled;
 }
 
@@ -72,7 +84,7 @@ cv::Mat eightBits(const sensor_msgs::Image& message, int type) {
 
 cv::Mat greyPixels(const sensor_msgs::Image& message) {
   const Conversion& conversion = conversionOf(message.encoding);
-  cv::Mat pixels = eightBits(message, conversion.type);
+  cv::Mat pixels = eightBits(message, conversion);
   if (conversion.to_grey == kAsItIs) {
     return pixels;
   }
@@ -83,7 +95,7 @@ cv::Mat greyPixels(const sensor_msgs::Image& message) {
 
 cv::Mat colorPixels(const sensor_msgs::Image& message) {
   const Conversion& conversion = conversionOf(message.encoding);
-  cv::Mat pixels = eightBits(message, conversion.type);
+  cv::Mat pixels = eightBits(message, conversion);
   if (conversion.to_color == kAsItIs) {
     return pixels.clone();
   }

@@ -1,36 +1,41 @@
 #include "fast_edi/ros/message_conversion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 
-#include <sensor_msgs/image_encodings.h>
 #include <boost/make_shared.hpp>
 
 namespace fast_edi {
 namespace {
 
-namespace encodings = sensor_msgs::image_encodings;
-
 constexpr std::uint32_t kMaxSide = std::numeric_limits<std::int16_t>::max();
 
+struct Encoding {
+  const char* name;
+  PixelFormat format;
+};
+
+constexpr std::array<Encoding, 19> kEncodings{{
+    {"mono8", PixelFormat::kMono8},          {"8UC1", PixelFormat::kMono8},
+    {"mono16", PixelFormat::kMono16},        {"rgb8", PixelFormat::kColor8},
+    {"bgr8", PixelFormat::kColor8},          {"rgba8", PixelFormat::kColorAlpha8},
+    {"bgra8", PixelFormat::kColorAlpha8},    {"rgb16", PixelFormat::kColor16},
+    {"bgr16", PixelFormat::kColor16},        {"rgba16", PixelFormat::kColorAlpha16},
+    {"bgra16", PixelFormat::kColorAlpha16},  {"bayer_rggb8", PixelFormat::kBayer8},
+    {"bayer_bggr8", PixelFormat::kBayer8},   {"bayer_gbrg8", PixelFormat::kBayer8},
+    {"bayer_grbg8", PixelFormat::kBayer8},   {"bayer_rggb16", PixelFormat::kBayer16},
+    {"bayer_bggr16", PixelFormat::kBayer16}, {"bayer_gbrg16", PixelFormat::kBayer16},
+    {"bayer_grbg16", PixelFormat::kBayer16},
+}};
+
 std::optional<PixelFormat> formatOf(const std::string& encoding) {
-  if (encoding == encodings::MONO8 || encoding == encodings::TYPE_8UC1) {
-    return PixelFormat::kMono8;
-  }
-  if (encoding == encodings::BAYER_RGGB8 || encoding == encodings::BAYER_BGGR8 ||
-      encoding == encodings::BAYER_GBRG8 || encoding == encodings::BAYER_GRBG8) {
-    return PixelFormat::kBayer8;
-  }
-  if (encoding == encodings::MONO16) {
-    return PixelFormat::kMono16;
-  }
-  if (encoding == encodings::RGB8 || encoding == encodings::BGR8) {
-    return PixelFormat::kColor8;
-  }
-  return std::nullopt;
+  const auto* found = std::find_if(kEncodings.begin(), kEncodings.end(),
+                                   [&](const Encoding& known) { return encoding == known.name; });
+  return found == kEncodings.end() ? std::nullopt : std::optional(found->format);
 }
 
 ImageReading refuse(ImageVerdict verdict, std::string reason) {
@@ -53,12 +58,15 @@ ImageReading readImage(const sensor_msgs::Image& message) {
   }
   const std::optional<PixelFormat> format = formatOf(message.encoding);
   if (!format) {
-    return refuse(ImageVerdict::kUnsupported,
-                  "encoding \"" + message.encoding +
-                      "\", expected mono8, 8UC1, bayer_*8, mono16, rgb8 or bgr8");
+    return refuse(
+        ImageVerdict::kUnsupported,
+        "encoding \"" + message.encoding +
+            "\", expected mono8, 8UC1, mono16, or rgb, bgr, rgba, bgra or bayer_* of 8 or "
+            "16 bits");
   }
-  if (*format == PixelFormat::kMono16 && message.is_bigendian != 0) {
-    return refuse(ImageVerdict::kUnsupported, "mono16 in big-endian order, expected little-endian");
+  if (bytesPerSample(*format) > 1 && message.is_bigendian != 0) {
+    return refuse(ImageVerdict::kUnsupported,
+                  message.encoding + " in big-endian order, expected little-endian");
   }
   // In 64 bits, where no product of the message's 32-bit fields overflows. The last row may lack
   // its padding.

@@ -1,9 +1,10 @@
 #include "fast_edi/ros/node_diagnostics.hpp"
 
-#include <cstdio>
 #include <utility>
 
+#include "fast_edi/core/number_text.hpp"
 #include "fast_edi/ros/overload_guard.hpp"
+#include "fast_edi/ros/status_values.hpp"
 
 namespace fast_edi {
 namespace {
@@ -25,9 +26,7 @@ double milliseconds(std::int64_t duration_ns) {
 }
 
 std::string secondsText(std::int64_t duration_ns) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.1f s", seconds(duration_ns));
-  return text;
+  return fixedText(seconds(duration_ns), 1) + " s";
 }
 
 std::string sizeText(const SensorSize& size) {
@@ -175,11 +174,12 @@ void NodeDiagnostics::summarise(DiagnosticStatusWrapper& status) const {
 }
 
 void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyRecord& output_latency,
-                           DiagnosticStatusWrapper& status) const {
-  summarise(status);
+                           DiagnosticStatusWrapper& wrapper) const {
+  summarise(wrapper);
   if (!now_.configuration_error.empty()) {
     return;
   }
+  StatusValues status(wrapper);
   const double elapsed_s = seconds(now_.time_ns - before_.time_ns);
   const auto rate = [elapsed_s](std::uint64_t now, std::uint64_t before) {
     return elapsed_s > 0.0 ? static_cast<double>(now - before) / elapsed_s : 0.0;

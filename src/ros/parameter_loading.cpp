@@ -1,14 +1,12 @@
 #include "fast_edi/ros/parameter_loading.hpp"
 
-#include <cmath>
 #include <filesystem>
-#include <limits>
-#include <sstream>
 #include <string>
 
 #include <ros/package.h>
 #include <ros/param.h>
 
+#include "fast_edi/config/live_parameters.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 
 namespace fast_edi {
@@ -19,20 +17,9 @@ YAML::Node convert(XmlRpc::XmlRpcValue value, const std::string& name) {
     case XmlRpc::XmlRpcValue::TypeBoolean:
       return YAML::Node(static_cast<bool>(value));
     case XmlRpc::XmlRpcValue::TypeInt:
-      return YAML::Node(static_cast<int>(value));
-    case XmlRpc::XmlRpcValue::TypeDouble: {
-      const double number = static_cast<double>(value);
-      if (std::isnan(number)) {
-        return YAML::Node(".nan");
-      }
-      if (std::isinf(number)) {
-        return YAML::Node(number > 0.0 ? ".inf" : "-.inf");
-      }
-      std::ostringstream text;
-      text.precision(std::numeric_limits<double>::max_digits10);
-      text << number;
-      return YAML::Node(text.str());
-    }
+      return YAML::Node(std::to_string(static_cast<int>(value)));
+    case XmlRpc::XmlRpcValue::TypeDouble:
+      return YAML::Node(scalarText(static_cast<double>(value)));
     case XmlRpc::XmlRpcValue::TypeString:
       return YAML::Node(static_cast<std::string>(value));
     case XmlRpc::XmlRpcValue::TypeArray: {

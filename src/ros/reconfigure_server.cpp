@@ -8,6 +8,7 @@
 #include <boost/thread/recursive_mutex.hpp>
 
 #include "fast_edi/DeblurConfig.h"
+#include "fast_edi/core/number_text.hpp"
 
 namespace fast_edi {
 namespace {
@@ -37,7 +38,7 @@ void assign(const Values& values, DeblurConfig& config) {
   dynamic_reconfigure::Config message;
   config.__toMessage__(message);
   const auto number = [&values](const std::string& name) {
-    return YAML::Node(values.at(name)).as<double>();
+    return parseNumber(values.at(name)).value();
   };
   for (auto& entry : message.bools) {
     entry.value = static_cast<std::uint8_t>(YAML::Node(values.at(entry.name)).as<bool>());

@@ -46,16 +46,39 @@ void check(const Connections& connections, const std::string& topic, const std::
   }
 }
 
-/// The topic with messages of \p type, if there is exactly one.
-std::string onlyTopic(const Connections& connections, const ExpectedType& type) {
-  std::set<std::string> topics;
-  for (const auto& entry : connections) {
-    if (entry.second.md5sum == type.md5sum && entry.second.messages > 0) {
-      topics.insert(entry.second.topic);
+/// False for what simulators record as the truth, and for what this package puts out.
+bool mayBeInput(const std::string& topic) {
+  for (const char* part : {"ground_truth", "groundtruth", "deblurred", "latent", "comparison"}) {
+    if ((topic + "/").find(std::string("/") + part + "/") != std::string::npos) {
+      return false;
     }
   }
-  return topics.size() == 1 ? *topics.begin() : std::string();
+  return true;
 }
+
+/// Topics that may be inputs, with messages of \p type, whose names end in \p ending.
+std::set<std::string> topicsOf(const Connections& connections, const ExpectedType& type,
+                               const std::string& ending = {}) {
+  std::set<std::string> topics;
+  for (const auto& entry : connections) {
+    const std::string& topic = entry.second.topic;
+    const bool ends = topic.size() >= ending.size() &&
+                      topic.compare(topic.size() - ending.size(), ending.size(), ending) == 0;
+    if (entry.second.md5sum == type.md5sum && entry.second.messages > 0 && ends &&
+        mayBeInput(topic)) {
+      topics.insert(topic);
+    }
+  }
+  return topics;
+}
+
+/// The only one of them, else \p otherwise.
+std::string onlyTopic(const std::set<std::string>& topics, const std::string& otherwise) {
+  return topics.size() == 1 ? *topics.begin() : otherwise;
+}
+
+/// Many other things are integers.
+constexpr const char* kExposureEnding = "exposure";
 
 bool has(const Connections& connections, const std::string& topic) {
   for (const auto& entry : connections) {
@@ -125,18 +148,39 @@ std::string checkTopics(const TopicNames& topics, const Connections& connections
 
 TopicNames guessTopics(TopicNames topics, const Connections& connections) {
   if (!has(connections, topics.events)) {
-    const std::string found = onlyTopic(connections, expected<EventArray>());
-    topics.events = found.empty() ? topics.events : found;
+    topics.events = onlyTopic(topicsOf(connections, expected<EventArray>()), topics.events);
   }
   if (!has(connections, topics.image)) {
-    const std::string found = onlyTopic(connections, expected<sensor_msgs::Image>());
-    topics.image = found.empty() ? topics.image : found;
+    topics.image = onlyTopic(topicsOf(connections, expected<sensor_msgs::Image>()), topics.image);
   }
   if (!has(connections, topics.exposure)) {
-    const std::string found = onlyTopic(connections, expected<std_msgs::Int32>());
-    topics.exposure = found.empty() ? topics.exposure : found;
+    topics.exposure = onlyTopic(topicsOf(connections, expected<std_msgs::Int32>(), kExposureEnding),
+                                topics.exposure);
   }
   return topics;
+}
+
+std::string guessText(const TopicNames& wanted, const TopicNames& guessed,
+                      const Connections& connections) {
+  std::string text;
+  const auto tell = [&text](const std::string& before, const std::string& after,
+                            const std::string& what) {
+    if (before != after) {
+      text += "no messages on " + before + ": " + after + " is taken as the " + what + "\n";
+    }
+  };
+  tell(wanted.events, guessed.events, "events, the only topic of their type");
+  tell(wanted.image, guessed.image, "frames, the only topic of their type");
+  tell(wanted.exposure, guessed.exposure,
+       "exposure times, the only std_msgs/Int32 whose name says so");
+  if (!has(connections, guessed.exposure)) {
+    for (const std::string& topic : topicsOf(connections, expected<std_msgs::Int32>())) {
+      text += topic +
+              " is a std_msgs/Int32 and not taken as exposure times; if it is, name it by "
+              "--exposure\n";
+    }
+  }
+  return text;
 }
 
 }  // namespace fast_edi

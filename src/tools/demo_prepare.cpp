@@ -100,6 +100,7 @@ int run(const Arguments& arguments) {
                              "); rosbag cannot play it, deblur_bag can read it");
   }
   const fast_edi::TopicNames topics = fast_edi::guessTopics(arguments.topics, reader.connections());
+  std::cerr << fast_edi::guessText(arguments.topics, topics, reader.connections());
   const std::string faults = fast_edi::checkTopics(topics, reader.connections());
   if (!faults.empty()) {
     throw fast_edi::BagError(arguments.bag + ": " + faults);

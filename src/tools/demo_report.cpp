@@ -172,7 +172,8 @@ class Report {
         topics_(arguments.topics),
         live_(arguments.live, topics_.outputImage()),
         time_offset_ns_(parameters.deblur.time_offset_ns),
-        pipeline_(topics_, parameters) {
+        pipeline_(topics_, parameters),
+        event_mapping_(parameters.deblur.event_mapping) {
     for (const auto& entry : reader.connections()) {
       frames_expected_ += entry.second.topic == topics_.image ? entry.second.messages : 0;
     }
@@ -215,7 +216,7 @@ class Report {
   void addEvents(const BagMessage& message) {
     const auto array = deserialise<EventArrayView>(message);
     const WireEvents events = array->events();
-    view_.addEvents(events);
+    view_.addEvents(events, sensorSize(*array), event_mapping_);
     if (events.empty()) {
       return;
     }
@@ -264,6 +265,7 @@ class Report {
   const std::int64_t time_offset_ns_;
   BagPipeline pipeline_;
   ComparisonView view_;
+  EventMapping event_mapping_;
   TagDetector detector_;
 
   std::deque<PendingFrame> pending_;

@@ -231,11 +231,10 @@ cv::Mat toMono8(const sensor_msgs::Image& message) {
   if (reading.verdict != fast_edi::ImageVerdict::kSupported) {
     return {};
   }
-  if (reading.view.format == fast_edi::PixelFormat::kBayer8) {
-    const fast_edi::ImageView& raw = reading.view;
-    return cv::Mat(raw.size.height, raw.size.width, CV_8UC1, const_cast<std::uint8_t*>(raw.data),
-                   raw.step)
-        .clone();
+  if (fast_edi::isBayer(reading.view.format)) {
+    sensor_msgs::Image raw = message;  // photosite by photosite, as they are deblurred
+    raw.encoding = fast_edi::bytesPerSample(reading.view.format) == 2 ? "mono16" : "mono8";
+    return fast_edi::greyPixels(raw).clone();
   }
   return fast_edi::greyPixels(message).clone();
 }

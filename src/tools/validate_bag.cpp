@@ -214,7 +214,9 @@ int run(const Arguments& arguments) {
   fast_edi::TopicNames topics = arguments.topics;
   topics.output = "/validate_bag";  // writes none: topics of deblurred frames may be there already
   {
-    topics = fast_edi::guessTopics(topics, recording->connections());
+    const fast_edi::TopicNames wanted = topics;
+    topics = fast_edi::guessTopics(wanted, recording->connections());
+    std::cout << fast_edi::guessText(wanted, topics, recording->connections());
     const std::string faults = fast_edi::checkTopics(topics, recording->connections());
     if (!faults.empty()) {
       fast_edi::printFinding(

@@ -3,6 +3,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "fast_edi/core/classic_locale.hpp"
+
 namespace fast_edi {
 
 std::string instantName(ExposureInstant instant) {
@@ -18,6 +20,7 @@ std::string instantName(ExposureInstant instant) {
 }
 
 std::string textOf(const char* format, ...) {
+  const ClassicLocale classic;
   std::va_list arguments;
   va_start(arguments, format);
   std::va_list again;

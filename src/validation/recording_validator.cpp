@@ -30,7 +30,7 @@ void append(std::vector<Finding>& findings, std::vector<Finding> more) {
 
 RecordingValidator::RecordingValidator(const AssumedParameters& parameters,
                                        const DeblurParameters& pipeline)
-    : mapping_(EventMapping{}), survey_(parameters), outcomes_(pipeline) {}
+    : mapping_(pipeline.event_mapping), survey_(parameters), outcomes_(pipeline) {}
 
 void RecordingValidator::addEvents(const WireEvents& events, SensorSize size,
                                    std::uint32_t sequence, std::int64_t record_ns) {

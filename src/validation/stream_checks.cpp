@@ -55,7 +55,8 @@ void checkSizes(const RecordingSurvey& survey, std::vector<Finding>& findings) {
                         "are passed through"});
   }
   for (const auto& fault : survey.frames().faults()) {
-    findings.push_back({"encoding", "mono8, 8UC1, mono16, bayer_*8, rgb8 or bgr8",
+    findings.push_back({"encoding",
+                        "mono8, 8UC1, mono16, or rgb, bgr, rgba, bgra, bayer of 8 or 16 bits",
                         textOf("%llu frames with %s", count(fault.second), fault.first.c_str()),
                         "driver: frame_mode 0, 1 or 2; such frames are passed through"});
   }

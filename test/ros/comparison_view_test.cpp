@@ -12,13 +12,19 @@ namespace {
 
 using Bgr = std::array<int, 3>;
 
+constexpr SensorSize kSensor{4, 4};
+
 sensor_msgs::Image makeImage(const std::string& encoding, std::uint8_t value) {
   sensor_msgs::Image image;
   image.header.stamp = ros::Time(9, 0);
   image.encoding = encoding;
   image.width = 4;
   image.height = 4;
-  const std::uint32_t bytes = encoding == "mono16" ? 2 : encoding == "rgb8" ? 3 : 1;
+  const std::uint32_t samples = encoding.rfind("rgba", 0) == 0 || encoding.rfind("bgra", 0) == 0 ? 4
+                                : encoding.rfind("rgb", 0) == 0 || encoding.rfind("bgr", 0) == 0
+                                    ? 3
+                                    : 1;
+  const std::uint32_t bytes = samples * (encoding.find("16") != std::string::npos ? 2 : 1);
   image.step = 4 * bytes;
   image.data.assign(image.step * image.height, value);
   return image;
@@ -39,7 +45,7 @@ TEST_F(ComparisonViewTest, ShowsInputEventsAndOutputSideBySide) {
   EventArray array;
   array.append({0, 0, 1000, true});
   array.append({1, 2, 1999, false});
-  view_.addEvents(array.events());
+  view_.addEvents(array.events(), kSensor, {});
   const auto picture = view_.draw(makeImage("mono8", 50), makeImage("mono8", 90), window_);
   EXPECT_EQ(picture->encoding, "bgr8");
   EXPECT_EQ(picture->width, 12u);
@@ -60,7 +66,7 @@ TEST_F(ComparisonViewTest, ShowsOnlyEventsOfTheExposureAndOnTheImage) {
   array.append({4, 0, 1500, true});
   array.append({0, 4, 1500, true});
   array.append({0, 0, 2000, true});
-  view_.addEvents(array.events());
+  view_.addEvents(array.events(), kSensor, {});
   const auto picture = view_.draw(makeImage("mono8", 50), makeImage("mono8", 90), window_);
   for (std::size_t y = 0; y < 4; ++y) {
     for (std::size_t x = 4; x < 8; ++x) {
@@ -69,13 +75,20 @@ TEST_F(ComparisonViewTest, ShowsOnlyEventsOfTheExposureAndOnTheImage) {
   }
 }
 
+TEST_F(ComparisonViewTest, ShowsEventsAsTheyAreMappedToTheFrame) {
+  EventArray array;
+  array.append({3, 0, 1500, true});
+  view_.addEvents(array.events(), kSensor, {EventPolarity::kInverted, EventOrientation::kFlipX});
+  const auto picture = view_.draw(makeImage("mono8", 50), makeImage("mono8", 90), window_);
+  const Bgr off = pixel(*picture, 4, 0);
+  EXPECT_GT(off[0], off[2]);
+  EXPECT_EQ(pixel(*picture, 7, 0), (Bgr{255, 255, 255}));
+}
+
 TEST_F(ComparisonViewTest, DrawsEveryEncodingThatIsDeblurred) {
-  for (const char* encoding : {"mono8", "8UC1", "mono16", "bayer_rggb8", "rgb8", "bgr8"}) {
-    sensor_msgs::Image image = makeImage(encoding, 80);
-    if (std::string(encoding) == "bgr8") {
-      image = makeImage("rgb8", 80);
-      image.encoding = "bgr8";
-    }
+  for (const char* encoding : {"mono8", "8UC1", "mono16", "bayer_rggb8", "bayer_gbrg16", "rgb8",
+                               "bgr8", "rgba8", "bgra8", "rgb16", "bgr16", "rgba16", "bgra16"}) {
+    const sensor_msgs::Image image = makeImage(encoding, 80);
     EXPECT_EQ(pixel(*view_.draw(image, image, window_), 1, 1), (Bgr{80, 80, 80})) << encoding;
   }
 }
@@ -97,14 +110,14 @@ TEST_F(ComparisonViewTest, DrawsImagesWhoseRowsDoNotFillTheMessage) {
 TEST_F(ComparisonViewTest, KeepsABoundedNumberOfEvents) {
   EventArray old_events;
   old_events.append({0, 0, 1000, true});
-  view_.addEvents(old_events.events());
+  view_.addEvents(old_events.events(), kSensor, {});
   EventArray many;
   many.reserve(ComparisonView::kMaxEvents + 1);
   many.append({1, 0, 1000, true});
   for (std::size_t i = 0; i < ComparisonView::kMaxEvents; ++i) {
     many.append({2, 0, 1000, true});
   }
-  view_.addEvents(many.events());
+  view_.addEvents(many.events(), kSensor, {});
   const auto picture = view_.draw(makeImage("mono8", 50), makeImage("mono8", 90), window_);
   EXPECT_EQ(pixel(*picture, 4, 0), (Bgr{255, 255, 255}));
   EXPECT_EQ(pixel(*picture, 5, 0), (Bgr{255, 255, 255}));

@@ -43,18 +43,26 @@ TEST(ImagePixelsTest, GreyOfEachEncoding) {
   // Weights of red, green and blue: 0.299, 0.587, 0.114.
   expectGrey(imageOf("rgb8", {100, 0, 0, 0, 100, 0}), 30, 59);
   expectGrey(imageOf("bgr8", {100, 0, 0, 0, 100, 0}), 11, 59);
+  expectGrey(imageOf("rgba8", {100, 0, 0, 7, 0, 100, 0, 7}), 30, 59);
+  expectGrey(imageOf("bgra8", {100, 0, 0, 7, 0, 100, 0, 7}), 11, 59);
+  expectGrey(imageOf("rgb16", {100, 100, 0, 0, 0, 0, 0, 0, 100, 100, 0, 0}), 30, 59);
+  expectGrey(imageOf("bgr16", {100, 100, 0, 0, 0, 0, 0, 0, 100, 100, 0, 0}), 11, 59);
+  expectGrey(imageOf("rgba16", {100, 100, 0, 0, 0, 0, 7, 7, 0, 0, 100, 100, 0, 0, 7, 7}), 30, 59);
+  expectGrey(imageOf("bgra16", {100, 100, 0, 0, 0, 0, 7, 7, 0, 0, 100, 100, 0, 0, 7, 7}), 11, 59);
 }
 
 TEST(ImagePixelsTest, BayerBecomesGrey) {
   sensor_msgs::Image image;
   image.width = 8;
   image.height = 8;
-  image.step = 8;
-  image.encoding = "bayer_rggb8";
-  image.data.assign(64, 120);
-  const cv::Mat grey = greyPixels(image);
-  ASSERT_EQ(grey.type(), CV_8UC1);
-  EXPECT_NEAR(grey.at<std::uint8_t>(4, 4), 120, 1);
+  for (const std::uint32_t bytes : {1U, 2U}) {
+    image.step = 8 * bytes;
+    image.encoding = bytes == 1 ? "bayer_rggb8" : "bayer_rggb16";
+    image.data.assign(64 * bytes, 120);
+    const cv::Mat grey = greyPixels(image);
+    ASSERT_EQ(grey.type(), CV_8UC1);
+    EXPECT_NEAR(grey.at<std::uint8_t>(4, 4), 120, 1);
+  }
 }
 
 TEST(ImagePixelsTest, NothingIsCopiedWithoutNeed) {
@@ -65,6 +73,10 @@ TEST(ImagePixelsTest, NothingIsCopiedWithoutNeed) {
 TEST(ImagePixelsTest, ColourIsBlueFirst) {
   EXPECT_EQ(colorPixels(imageOf("rgb8", {1, 2, 3, 4, 5, 6})).at<cv::Vec3b>(1, 1),
             cv::Vec3b(6, 5, 4));
+  EXPECT_EQ(colorPixels(imageOf("rgba8", {1, 2, 3, 9, 4, 5, 6, 9})).at<cv::Vec3b>(1, 1),
+            cv::Vec3b(6, 5, 4));
+  EXPECT_EQ(colorPixels(imageOf("bgr16", {1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6})).at<cv::Vec3b>(1, 1),
+            cv::Vec3b(4, 5, 6));
   EXPECT_EQ(colorPixels(imageOf("mono8", {10, 200})).at<cv::Vec3b>(1, 1), cv::Vec3b(200, 200, 200));
   EXPECT_EQ(colorPixels(imageOf("8UC1", {10, 200})).at<cv::Vec3b>(0, 0), cv::Vec3b(10, 10, 10));
 }

@@ -65,10 +65,20 @@ INSTANTIATE_TEST_SUITE_P(All, SupportedEncoding,
                                            EncodingCase{"bayer_grbg8", PixelFormat::kBayer8},
                                            EncodingCase{"mono16", PixelFormat::kMono16},
                                            EncodingCase{"rgb8", PixelFormat::kColor8},
-                                           EncodingCase{"bgr8", PixelFormat::kColor8}));
+                                           EncodingCase{"bgr8", PixelFormat::kColor8},
+                                           EncodingCase{"rgba8", PixelFormat::kColorAlpha8},
+                                           EncodingCase{"bgra8", PixelFormat::kColorAlpha8},
+                                           EncodingCase{"rgb16", PixelFormat::kColor16},
+                                           EncodingCase{"bgr16", PixelFormat::kColor16},
+                                           EncodingCase{"rgba16", PixelFormat::kColorAlpha16},
+                                           EncodingCase{"bgra16", PixelFormat::kColorAlpha16},
+                                           EncodingCase{"bayer_rggb16", PixelFormat::kBayer16},
+                                           EncodingCase{"bayer_bggr16", PixelFormat::kBayer16},
+                                           EncodingCase{"bayer_gbrg16", PixelFormat::kBayer16},
+                                           EncodingCase{"bayer_grbg16", PixelFormat::kBayer16}));
 
 TEST(ReadImage, NamesAnEncodingThatIsNotDeblurred) {
-  for (const char* encoding : {"32FC1", "yuv422", "bayer_rggb16", "16UC1", ""}) {
+  for (const char* encoding : {"32FC1", "yuv422", "16UC1", ""}) {
     const ImageReading reading = readImage(makeImage(encoding, 4, 3, 16));
     EXPECT_EQ(reading.verdict, ImageVerdict::kUnsupported);
     EXPECT_THAT(reading.reason, HasSubstr("\"" + std::string(encoding) + "\""));
@@ -77,11 +87,16 @@ TEST(ReadImage, NamesAnEncodingThatIsNotDeblurred) {
   }
 }
 
-TEST(ReadImage, LeavesBigEndianMono16Alone) {
-  sensor_msgs::Image image = makeImage("mono16", 4, 3, 8);
-  image.is_bigendian = 1;
-  EXPECT_EQ(readImage(image).verdict, ImageVerdict::kUnsupported);
-  EXPECT_THAT(readImage(image).reason, HasSubstr("big-endian"));
+TEST(ReadImage, LeavesBigEndianNumbersOf16BitsAlone) {
+  for (const char* encoding : {"mono16", "rgb16", "bgra16", "bayer_grbg16"}) {
+    sensor_msgs::Image image = makeImage(encoding, 4, 3, 32);
+    image.is_bigendian = 1;
+    EXPECT_EQ(readImage(image).verdict, ImageVerdict::kUnsupported);
+    EXPECT_THAT(readImage(image).reason, HasSubstr(std::string(encoding) + " in big-endian"));
+  }
+  sensor_msgs::Image bytes = makeImage("bgra8", 4, 3, 16);
+  bytes.is_bigendian = 1;
+  EXPECT_EQ(readImage(bytes).verdict, ImageVerdict::kSupported);
 }
 
 TEST(ReadImage, RefusesLengthsThatContradictEachOther) {

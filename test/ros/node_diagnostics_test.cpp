@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "ros/diagnostic_value.hpp"
+#include "support/comma_locale.hpp"
 
 namespace fast_edi {
 namespace {
@@ -63,6 +64,19 @@ TEST_F(NodeDiagnosticsTest, SaysWhyTheConfigurationWasRefused) {
   const auto status = report();
   EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
   EXPECT_THAT(status.message, HasSubstr("wieghting: unknown key"));
+}
+
+TEST_F(NodeDiagnosticsTest, WritesNumbersTheSameUnderEveryLocale) {
+  tick();
+  now_.counters.events_in = 13'000'000;
+  now_.thresholds = {0.26, 0.24};
+  now_.last_frame_ns = now_.time_ns - 5 * kSecond_ns / 2;
+  const testing::CommaLocale comma;
+  const auto status = report();
+  EXPECT_EQ(value(status, "Events in"), "13000000");
+  EXPECT_EQ(value(status, "Contrast threshold ON"), "0.260000");
+  EXPECT_EQ(value(status, "Event rate [Mev/s]"), "13.000");
+  EXPECT_THAT(status.message, HasSubstr("2.5 s"));
 }
 
 TEST_F(NodeDiagnosticsTest, TurnsCountsIntoRates) {

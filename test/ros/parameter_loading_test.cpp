@@ -8,6 +8,7 @@
 #include <ros/package.h>
 
 #include "fast_edi/config/parameters_from_yaml.hpp"
+#include "support/comma_locale.hpp"
 
 namespace fast_edi {
 namespace {
@@ -36,6 +37,15 @@ TEST(YamlFromXmlRpc, KeepsEveryBitOfNumbers) {
     value["x"] = number;
     EXPECT_EQ(yamlFromXmlRpc(value)["x"].as<double>(), number);
   }
+}
+
+TEST(YamlFromXmlRpc, WritesNumbersTheSameUnderEveryLocale) {
+  XmlRpc::XmlRpcValue value;
+  value["x"] = 0.25;
+  value["n"] = 13'000'000;
+  const testing::CommaLocale comma;
+  EXPECT_EQ(yamlFromXmlRpc(value)["x"].Scalar(), "0.25");
+  EXPECT_EQ(yamlFromXmlRpc(value)["n"].Scalar(), "13000000");
 }
 
 TEST(YamlFromXmlRpc, RefusesWhatNoParameterIs) {

@@ -40,7 +40,11 @@ std::string encodingOf(const ScheduledMessage& frame) {
   const std::map<PixelFormat, std::string> names{{PixelFormat::kMono8, encodings::MONO8},
                                                  {PixelFormat::kBayer8, encodings::BAYER_GRBG8},
                                                  {PixelFormat::kMono16, encodings::MONO16},
-                                                 {PixelFormat::kColor8, encodings::RGB8}};
+                                                 {PixelFormat::kColor8, encodings::RGB8},
+                                                 {PixelFormat::kBayer16, encodings::BAYER_RGGB16},
+                                                 {PixelFormat::kColor16, encodings::BGR16},
+                                                 {PixelFormat::kColorAlpha8, encodings::RGBA8},
+                                                 {PixelFormat::kColorAlpha16, encodings::BGRA16}};
   return names.at(frame.format);
 }
 
@@ -207,7 +211,7 @@ TEST(RandomMessageSchedules, EachImageHasItsCameraInfoWhateverComes) {
     parameters.deblur.reference = static_cast<ExposureInstant>(uniform(random, 0, 2));
     parameters.deblur.latent.per_exposure = chance(random, 20) ? 2 : 0;
     Recording recording(random, parameters);
-    const auto format = static_cast<PixelFormat>(uniform(random, 0, 3));
+    const auto format = static_cast<PixelFormat>(uniform(random, 0, 7));
     for (const ScheduledMessage& message : testing::disturbedSchedule(random, kSize, format)) {
       recording.deliver(message);
       if (HasFatalFailure()) {

@@ -24,6 +24,7 @@
 #include <ros/param.h>
 #include <ros/service.h>
 
+#include "fast_edi/config/parameter_table.hpp"
 #include "rostest/child_process.hpp"
 #include "rostest/expectations.hpp"
 #include "rostest/node_client.hpp"
@@ -231,9 +232,37 @@ TEST_F(Reconfigure, NamesKeyValueAndRangeOfWhatItRefuses) {
   set(Values().number("close_timeout_ms", 0.0));
   EXPECT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
     return status.level >= DiagnosticStatus::WARN &&
-           status.message.find(
-               "close_timeout_ms: found '0', expected a number 1..60000 [ms]") != std::string::npos;
+           status.message.find("close_timeout_ms: found '0', expected a number 1..60000 [ms]") !=
+               std::string::npos;
   })) << client_->report().message;
+}
+
+/// Whatever is accepted is in force, whatever is refused leaves the old value, and the next request
+/// works, up to the frames.
+TEST_F(Reconfigure, TakesOverBothEndsOfEachRangeAndNothingTooSmallToMeanAnything) {
+  connectTo("/tuned");
+  for (const ParameterDescription& key : parameterDescriptions()) {
+    if (!key.live || !key.limits) {
+      continue;
+    }
+    SCOPED_TRACE(key.name);
+    const bool integer = key.type == "integer";
+    const auto after = [&](double value) {
+      const Config reply = integer ? set(Values().integer(key.name, static_cast<int>(value)))
+                                   : set(Values().number(key.name, value));
+      return integer ? valueIn(reply.ints, key.name) : numberIn(reply, key.name);
+    };
+    EXPECT_EQ(after(key.limits->highest), key.limits->highest);
+    EXPECT_EQ(after(key.limits->lowest), key.limits->lowest);
+    if (key.limits->lowest > 0.0) {
+      for (const double nothing : {1e-7, 1e-46}) {
+        EXPECT_EQ(after(nothing), key.limits->lowest);
+      }
+    }
+  }
+  call(start_);
+  const Recording recording = laterRecording();
+  expectSameImages(outputsOf(recording), deblurWithoutRos(recording, testParameters()));
 }
 
 TEST_F(Reconfigure, DescribesTheRangesThatHold) {

@@ -9,6 +9,7 @@
 
 #include <sensor_msgs/Image.h>
 
+#include "fast_edi/core/event_mapping.hpp"
 #include "fast_edi/core/event_wire.hpp"
 #include "fast_edi/core/types.hpp"
 
@@ -21,7 +22,8 @@ class ComparisonView {
   /// Older events are forgotten: a picture of a longer exposure shows its last ones.
   static constexpr std::size_t kMaxEvents = 1'000'000;
 
-  void addEvents(const WireEvents& events);
+  /// \param size as the event array states it
+  void addEvents(const WireEvents& events, SensorSize size, const EventMapping& mapping);
   /// Forgets all events.
   void clear();
 

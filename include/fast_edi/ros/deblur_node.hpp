@@ -106,8 +106,10 @@ class DeblurNode {
   void guardAgainstOverload();
   void report();
 
-  LoadedParameters withDriverBiases(const dynamic_reconfigure::ConfigConstPtr& biases) const;
+  LoadedParameters withDriverBiases(LoadedParameters parameters,
+                                    const dynamic_reconfigure::ConfigConstPtr& biases) const;
   void putInForce(LoadedParameters parameters);
+  void putInForce(LiveParameters next);
   void announceContrast() const;
   void deliver(const sensor_msgs::ImagePtr& image, const sensor_msgs::CameraInfoPtr& info,
                const OutputFrame& output);

@@ -24,7 +24,8 @@ struct ImageReading {
   std::string reason;  ///< found and expected, when not supported
 };
 
-/// Encodings: mono8, 8UC1, raw Bayer with 8 bit, mono16 (little endian), rgb8, bgr8.
+/// Encodings: mono8, 8UC1, mono16; rgb, bgr, rgba, bgra and raw Bayer of 8 or 16 bits. Those of 16
+/// bits must be little endian.
 ImageReading readImage(const sensor_msgs::Image& message);
 
 /// An image like \p input, without padding at the end of rows and with undefined pixels.

@@ -34,9 +34,17 @@ std::string checkTopics(const TopicNames& topics,
                         const std::map<std::uint32_t, BagConnection>& connections);
 
 /// For recordings of other drivers: where no message was recorded on `events` or `image`, the only
-/// topic that has the type is taken instead (with its namespace for the exposure). Ambiguity leaves
-/// the names as they are, for checkTopics() to complain.
+/// topic that has the type is taken instead; as `exposure`, the only std_msgs/Int32 whose name ends
+/// in "exposure" (many other things are integers). Ambiguity leaves the names as they are, for
+/// checkTopics() to complain. True frames of a simulation (a part of the name being "ground_truth")
+/// and this package's own outputs are never taken.
 TopicNames guessTopics(TopicNames topics,
                        const std::map<std::uint32_t, BagConnection>& connections);
+
+/// What guessTopics() did, for people: one line for each name that it changed, and one when there
+/// is no exposure topic but an std_msgs/Int32 that it might have meant. Empty when there is nothing
+/// to say.
+std::string guessText(const TopicNames& wanted, const TopicNames& guessed,
+                      const std::map<std::uint32_t, BagConnection>& connections);
 
 }  // namespace fast_edi
