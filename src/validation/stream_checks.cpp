@@ -167,7 +167,8 @@ void checkRates(const ClockRelation& clocks, std::vector<Finding>& findings) {
 }
 
 void checkOffset(const RecordingSurvey& survey, std::vector<Finding>& findings) {
-  if (!survey.clocks()) {
+  // A clock that was set back has no one offset; that it was is a finding of its own.
+  if (!survey.clocks() || survey.timeline().backwardJumps() > 0) {
     return;
   }
   if (survey.clocks()->ratesDiffer()) {
