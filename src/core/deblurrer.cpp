@@ -43,8 +43,8 @@ bool learnAlike(const DeblurParameters& a, const DeblurParameters& b) {
          a.time_offset_ns == b.time_offset_ns && a.event_mapping == b.event_mapping &&
          a.stamp_reference == b.stamp_reference && a.exposure_source == b.exposure_source &&
          a.exposure_time_ns == b.exposure_time_ns && a.filter.enabled == b.filter.enabled &&
-         a.level == b.level &&
-         a.refine_contrast == b.refine_contrast && a.refine_delay == b.refine_delay;
+         a.level == b.level && a.refine_contrast == b.refine_contrast &&
+         a.refine_delay == b.refine_delay;
 }
 
 struct WaitingFrame {

@@ -44,7 +44,8 @@ Aedat4Header readAedat4Header(const ByteSource& file, const std::string& path);
 
 /// The data table; nothing when it cannot be read.
 /// \pre header.data_table
-std::optional<std::vector<Aedat4TableEntry>> readAedat4Table(const ByteSource& file, const Aedat4Header& header,
-                                              Decompressor& decompressor);
+std::optional<std::vector<Aedat4TableEntry>> readAedat4Table(const ByteSource& file,
+                                                             const Aedat4Header& header,
+                                                             Decompressor& decompressor);
 
 }  // namespace fast_edi

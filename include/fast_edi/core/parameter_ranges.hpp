@@ -50,8 +50,7 @@ constexpr ParameterRange kLatentImages{
     "latent_images", "images per exposure", {0.0, kMaxLatentImages}};
 constexpr ParameterRange kLevelRamp{"level_ramp_ms", "ms", {0.1, 16.0, true}};
 constexpr ParameterRange kLevelRampFraction{"level_ramp_fraction", "", {0.0, 1.0}};
-constexpr ParameterRange kFilterGainNoise{
-    "filter_gain_noise", "contrast thresholds", {0.01, 10.0}};
+constexpr ParameterRange kFilterGainNoise{"filter_gain_noise", "contrast thresholds", {0.01, 10.0}};
 constexpr ParameterRange kFilterGainSigma{"filter_gain_sigma_px", "px", {0.1, 10.0}};
 constexpr ParameterRange kFilterGainRestore{
     "filter_gain_restore", "", {0.0, static_cast<double>(GainFilter::kMaxRestore)}};

@@ -12,8 +12,8 @@
 /// | strong     | a warm or slowly biased sensor, single hot pixels | |
 /// | mismatch   | thresholds spread by 15 % | |
 /// | refractory | 1 ms refractory period | |
-/// | slow       | v2e at 200 Hz: bandwidth in proportion to I + 20 DN, linear below 20 DN | Hu et al., CVPR Workshops 2021 |
-/// | slow-noisy | v2e's noisy preset: 30 Hz, leak, shot noise, 0.5 ms refractory period | the same |
+/// | slow       | v2e at 200 Hz: bandwidth ~ I + 20 DN, linear below 20 DN | Hu et al. 2021 |
+/// | slow-noisy | v2e's noisy preset: 30 Hz, leak, shot noise, 0.5 ms refractory | the same |
 #pragma once
 
 #include <string>
