@@ -17,6 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 const std::string kTools = std::string(FAST_EDI_TOOLS_DIR) + "/";
+const std::string kDemo = FAST_EDI_SOURCE_DIR "/bags/demo.bag";
 const std::string kThresholds = " contrast_threshold_on:=0.2609 contrast_threshold_off:=0.2415";
 
 class CountTagsTest : public ::testing::Test {
@@ -61,9 +62,9 @@ TEST_F(CountTagsTest, NamesWhatIsWrong) {
     EXPECT_THAT(result.output, HasSubstr(message));
   };
   fails("/nonexistent.bag" + kThresholds, "/nonexistent.bag");
-  fails("/nonexistent.bag", "contrast_threshold_on");
+  fails(kDemo, "contrast_threshold_on");
   fails("a.bag b.bag" + kThresholds, "one recording at a time");
-  fails("a.bag --family 36h12" + kThresholds, "expected one of: 36h11");
+  fails(kDemo + " --family 36h12" + kThresholds, "expected one of: 36h11");
   fails(kThresholds, "expected a BAG");
   EXPECT_EQ(runCommand(kTools + "count_tags --help").exit_code, 0);
 }

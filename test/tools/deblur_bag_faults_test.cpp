@@ -166,7 +166,7 @@ TEST_F(DeblurBagFaults, AFilmThatDoesNotFitIsNamedAndRemoved) {
 
 TEST_F(DeblurBagFaults, AFilmOnAFullDiskIsNamed) {
   fs::create_symlink("/dev/full", path("film.active.mp4"));
-  const auto full = testing::runCommand(toFilm(path("film.mp4")));
+  const auto full = testing::runCommand(toFilm(path("film.mp4")) + " --force");
   EXPECT_EQ(full.exit_code, 1);
   EXPECT_THAT(full.output, AllOf(HasSubstr("cannot write " + path("film.mp4")),
                                  HasSubstr("No space left on device")));

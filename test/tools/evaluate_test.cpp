@@ -18,6 +18,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 const std::string kTool = std::string(FAST_EDI_TOOLS_DIR) + "/evaluate ";
+const std::string kDemo = FAST_EDI_SOURCE_DIR "/bags/demo.bag";
 const std::string kThresholds = " contrast_threshold_on:=0.2609 contrast_threshold_off:=0.2415";
 
 std::string contentOf(const std::string& path) {
@@ -135,7 +136,7 @@ TEST_F(EvaluateTest, NamesWhatIsWrong) {
   fails("", "expected either a BAG or --sequences");
   fails("a.bag b.bag" + kThresholds, "one recording at a time");
   fails("/nonexistent.bag" + kThresholds, "/nonexistent.bag");
-  fails("/nonexistent.bag", "contrast_threshold_on");
+  fails(kDemo, "contrast_threshold_on");
   fails("--sequences twelve --frames 0", "at least one frame");
   fails("--sequences twelve --video 4", "expected an odd number");
   fails("a.bag --video 5" + kThresholds, "--video goes with --sequences twelve");
