@@ -244,7 +244,8 @@ TEST_F(SimulateDavisTool, RefusesWhatItCannotDo) {
       {"--stamp noon", "--stamp: expected start, mid or end, got \"noon\""},
       {"--noise loud", "--noise: sensor model: expected one of none, clean"},
       {"--texture velvet",
-       "texture: expected one of poster, natural, flat, mosaic, page, got \"velvet\""},
+       "texture: expected one of poster, natural, flat, mosaic, page, clouds, facade, weave, got "
+       "\"velvet\""},
       {"--threshold-on 0", "ON threshold [natural log]: expected 0.01 to 10, got 0"},
       {"--array-us 0", "--array-us: expected more than 0"},
       {"--frmes 3", "unrecognised option '--frmes'"},
