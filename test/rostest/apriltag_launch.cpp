@@ -77,10 +77,12 @@ TEST(AprilTagLaunch, FindsTagsInBothStreamsOfARecording) {
   EXPECT_LT(framesWithTag(blurry), 9U);
 }
 
-/// roslaunch's answer about apriltag_ros.launch.
+/// roslaunch's answer about apriltag_ros.launch, with stand-ins for packages that it names.
 std::string ask(const std::string& question, const std::string& arguments = "") {
-  const auto answer = testing::runCommand("roslaunch " + question + " " + kLaunchFolder +
-                                          "apriltag_ros.launch " + arguments);
+  const auto answer =
+      testing::runCommand("ROS_PACKAGE_PATH='" FAST_EDI_SOURCE_DIR
+                          "/test/rostest/stand_in':\"$ROS_PACKAGE_PATH\" roslaunch " +
+                          question + " " + kLaunchFolder + "apriltag_ros.launch " + arguments);
   EXPECT_EQ(answer.exit_code, 0) << answer.output;
   return answer.output;
 }

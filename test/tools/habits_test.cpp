@@ -107,6 +107,9 @@ class ToolFiles : public ::testing::Test {
     const std::string in = " --in " + quoted(bag_);
     const std::string config = " --config " + quoted(kConfig);
     return {
+        {"convert_recording",
+         {{quoted(bag_) + " " + quoted(file("out.bag")), file("out.bag")},
+          {quoted(bag_) + " " + quoted(file("out.aedat4")), file("out.aedat4")}}},
         {"deblur_bag",
          {{in + config + " --out " + quoted(file("out.bag")), file("out.bag")},
           {in + config + " --fps 100 --video " + quoted(file("out.avi")), file("out.avi")}}},
