@@ -360,7 +360,7 @@ void CameraResponse::applyColor(PixelFormat format, const std::uint8_t* in, cons
   const auto colors = static_cast<std::size_t>(channels(format));
   const auto samples = static_cast<std::size_t>(samplesPerPixel(format));
   const auto bytes = static_cast<std::size_t>(bytesPerPixel(format));
-  std::array<float, kBlockPixels * kMostSamples> sample_gain;
+  std::array<float, kBlockPixels * kMostSamples> sample_gain{};
   sample_gain.fill(1.0F);
   for (std::size_t begin = 0; begin < width; begin += kBlockPixels) {
     const std::size_t count = std::min(kBlockPixels, width - begin);

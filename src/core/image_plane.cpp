@@ -31,7 +31,7 @@ void storeRow(const float* in, std::size_t count, std::size_t stride, std::uint8
 void loadPlane(const ImageView& image, int channel, float* plane) {
   const auto width = static_cast<std::size_t>(image.size.width);
   const auto stride = static_cast<std::size_t>(samplesPerPixel(image.format));
-  const int bytes = bytesPerSample(image.format);
+  const std::ptrdiff_t bytes = bytesPerSample(image.format);
   for (int y = 0; y < image.size.height; ++y) {
     float* row = plane + static_cast<std::size_t>(y) * width;
     const std::uint8_t* in = image.row(y) + channel * bytes;
@@ -46,7 +46,7 @@ void loadPlane(const ImageView& image, int channel, float* plane) {
 void storePlane(const float* plane, int channel, const MutableImageView& image) {
   const auto width = static_cast<std::size_t>(image.size.width);
   const auto stride = static_cast<std::size_t>(samplesPerPixel(image.format));
-  const int bytes = bytesPerSample(image.format);
+  const std::ptrdiff_t bytes = bytesPerSample(image.format);
   for (int y = 0; y < image.size.height; ++y) {
     const float* row = plane + static_cast<std::size_t>(y) * width;
     std::uint8_t* out = image.row(y) + channel * bytes;

@@ -30,11 +30,12 @@ std::int64_t wireSecond(const std::uint8_t* record, std::uint32_t& second) {
 
 }  // namespace
 
+// Events are written before they are read. NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
 struct PixelEventLists::Chunk {
-  std::int64_t base_ns;
-  std::uint64_t first_sequence;
-  std::size_t count;
-  std::unique_ptr<std::uint16_t[]> intervals;  ///< of the events, once they were kept
+  std::int64_t base_ns = 0;
+  std::uint64_t first_sequence = 0;
+  std::size_t count = 0;
+  std::vector<std::uint16_t> intervals;  ///< of the events, once they were kept
   PackedEvent events[kChunkEvents];
 
   std::int64_t time(std::size_t i) const { return base_ns + events[i].dt_ns; }
@@ -76,7 +77,7 @@ void PixelEventLists::keepIntervals(bool keep) {
     intervals_.release();
     for (auto* chunks : {&chunks_, &free_chunks_}) {
       for (const std::unique_ptr<Chunk>& chunk : *chunks) {
-        chunk->intervals.reset();
+        chunk->intervals = {};
       }
     }
     return;
@@ -91,10 +92,10 @@ void PixelEventLists::measureIntervals(Chunk& chunk, std::size_t first, std::siz
   if (!keeps_intervals_) {
     return;
   }
-  if (!chunk.intervals) {
-    chunk.intervals.reset(new std::uint16_t[kChunkEvents]);
+  if (chunk.intervals.empty()) {
+    chunk.intervals.resize(kChunkEvents);
   }
-  intervals_.measure(chunk.events + first, count, chunk.base_ns, chunk.intervals.get() + first);
+  intervals_.measure(chunk.events + first, count, chunk.base_ns, chunk.intervals.data() + first);
 }
 
 AppendResult PixelEventLists::append(const WireEvents& events) {
@@ -289,7 +290,7 @@ std::size_t PixelEventLists::memoryBytes() const {
   std::size_t bytes = (chunks_.size() + free_chunks_.size()) * sizeof(Chunk);
   for (const auto* chunks : {&chunks_, &free_chunks_}) {
     for (const std::unique_ptr<Chunk>& chunk : *chunks) {
-      bytes += chunk->intervals ? kChunkEvents * sizeof(std::uint16_t) : 0;
+      bytes += chunk->intervals.capacity() * sizeof(std::uint16_t);
     }
   }
   return bytes + intervals_.memoryBytes();
@@ -326,7 +327,7 @@ PackedEventSpan PixelEventLists::span(std::uint64_t sequence, std::uint64_t end_
   const std::size_t offset = static_cast<std::size_t>(sequence - chunk.first_sequence);
   result.data = chunk.events + offset;
   if (keeps_intervals_) {
-    result.intervals = chunk.intervals.get() + offset;
+    result.intervals = chunk.intervals.data() + offset;
   }
   result.count = static_cast<std::size_t>(std::min(end_sequence, chunk.endSequence()) - sequence);
   result.base_ns = chunk.base_ns;

@@ -116,14 +116,14 @@ std::vector<Packet> mergedOrder(std::vector<Aedat4TableEntry> entries,
     // Each stream keeps its order where its time goes back.
     range.latest_us = entry.end_us = std::max(range.latest_us, entry.end_us);
   }
-  const auto isOf = [&streams](std::int32_t stream, StreamKind kind) {
+  const auto is_of = [&streams](std::int32_t stream, StreamKind kind) {
     const auto found = streams.find(stream);
     return found != streams.end() && found->second.kind == kind;
   };
   bool apart = false;
   for (const auto& [events, of_events] : ranges) {
     for (const auto& [frames, of_frames] : ranges) {
-      if (isOf(events, StreamKind::kEvents) && isOf(frames, StreamKind::kFrames)) {
+      if (is_of(events, StreamKind::kEvents) && is_of(frames, StreamKind::kFrames)) {
         apart |= of_events.last < of_frames.first || of_frames.last < of_events.first;
       }
     }
@@ -511,7 +511,7 @@ class Aedat4Reader::Impl {
     const FlatTable& table = *table_;
     const int width = table.number<std::int16_t>(kFrameWidth, 0);
     const int height = table.number<std::int16_t>(kFrameHeight, 0);
-    const int format = table.number<std::int8_t>(kFrameFormat, 0);
+    const int format = table.number<std::uint8_t>(kFrameFormat, 0);
     const FlatVector pixels = table.vector(kFramePixels, 1);
     const std::optional<PixelLayout> layout = layoutOf(format);
     const std::optional<ExposureInterval> exposure = exposureOf(table);

@@ -78,7 +78,7 @@ RecordingMessages::RecordingMessages(std::unique_ptr<Recording> recording, std::
   });
   const std::string first_camera = first != streams.end() ? first->camera : std::string();
   std::set<std::string> taken;
-  const auto topicOf = [&](const RecordedStream& stream, const char* name) {
+  const auto topic_of = [&](const RecordedStream& stream, const char* name) {
     const std::string name_space =
         stream.camera == first_camera || stream.camera.empty() || first == streams.end()
             ? kFirstNamespace
@@ -102,17 +102,17 @@ RecordingMessages::RecordingMessages(std::unique_ptr<Recording> recording, std::
     output.size = streams[i].size;
     switch (streams[i].kind) {
       case StreamKind::kEvents:
-        output.connection = connect<EventArrayView>(topicOf(streams[i], "events"));
+        output.connection = connect<EventArrayView>(topic_of(streams[i], "events"));
         break;
       case StreamKind::kFrames:
-        output.connection = connect<sensor_msgs::Image>(topicOf(streams[i], "image_raw"));
-        output.exposure_connection = connect<std_msgs::Int32>(topicOf(streams[i], "exposure"));
+        output.connection = connect<sensor_msgs::Image>(topic_of(streams[i], "image_raw"));
+        output.exposure_connection = connect<std_msgs::Int32>(topic_of(streams[i], "exposure"));
         break;
       case StreamKind::kImu:
-        output.connection = connect<sensor_msgs::Imu>(topicOf(streams[i], "imu"));
+        output.connection = connect<sensor_msgs::Imu>(topic_of(streams[i], "imu"));
         break;
       case StreamKind::kCalibration:
-        output.connection = connect<sensor_msgs::CameraInfo>(topicOf(streams[i], "camera_info"));
+        output.connection = connect<sensor_msgs::CameraInfo>(topic_of(streams[i], "camera_info"));
         break;
       case StreamKind::kTriggers:
         break;

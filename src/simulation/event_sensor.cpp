@@ -100,7 +100,8 @@ void EventSensor::drawHotPixels(std::uint64_t seed) {
     const cv::Rect place = cv::Rect(corner, extent) & sensor;
     for (int row = place.y; row < place.br().y; ++row) {
       for (int column = place.x; column < place.br().x; ++column) {
-        hot[static_cast<std::size_t>(row * width + column)] = true;
+        hot[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+            static_cast<std::size_t>(column)] = true;
       }
     }
   }

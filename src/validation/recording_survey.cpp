@@ -62,7 +62,7 @@ void RecordingSurvey::relate() {
     return;
   }
   const auto epoch = static_cast<std::size_t>(longest - timeline_.epochs().data());
-  const auto frameReadings = [&] {
+  const auto frame_readings = [&] {
     std::vector<ClockReading> readings;
     for (const LoggedFrame& frame : frames_.frames()) {
       if (frame.epoch == epoch) {
@@ -77,14 +77,14 @@ void RecordingSurvey::relate() {
       array_readings.push_back(array.clock);
     }
   }
-  clocks_ = relateClocks(frameReadings(), array_readings);
+  clocks_ = relateClocks(frame_readings(), array_readings);
   if (!clocks_) {
     return;
   }
   rough_offset_ns_ = clocks_->offset_ns;
   if (clocks_->factor != 1) {
     frames_.changeStamps([this](std::int64_t stamp_ns) { return clocks_->undone(stamp_ns); });
-    rough_offset_ns_ = relateClocks(frameReadings(), array_readings)->offset_ns;
+    rough_offset_ns_ = relateClocks(frame_readings(), array_readings)->offset_ns;
   }
 }
 

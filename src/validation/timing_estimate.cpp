@@ -425,8 +425,9 @@ void Estimator::checkLength() {
   }
   const Located located = locate(costs, [](const std::vector<double>& sums) {
     std::vector<double> lengths;
-    for (auto row = sums.begin(); row != sums.end(); row += 2 * kScaleSteps + 1) {
-      lengths.push_back(leastValue({row, row + 2 * kScaleSteps + 1}));
+    constexpr std::ptrdiff_t kScales = std::ptrdiff_t{2} * kScaleSteps + 1;
+    for (auto row = sums.begin(); row != sums.end(); row += kScales) {
+      lengths.push_back(leastValue({row, row + kScales}));
     }
     return leastOf(lengths);
   });

@@ -67,7 +67,7 @@ void readExposure(SampledFrame& frame, const SampleGrid& grid, EventOrientation 
 }
 
 bool areStretched(const std::vector<TimingSample>& samples) {
-  const auto isStretched = [](const SampledFrame& frame) {
+  const auto is_stretched = [](const SampledFrame& frame) {
     std::array<std::size_t, kLevels> counts{};
     for (const std::uint8_t level : frame.levels) {
       ++counts[level];
@@ -79,7 +79,7 @@ bool areStretched(const std::vector<TimingSample>& samples) {
   };
   return samples.size() >= kLeastStretched &&
          std::all_of(samples.begin(), samples.end(), [&](const TimingSample& sample) {
-           return isStretched(sample.first) && isStretched(sample.second);
+           return is_stretched(sample.first) && is_stretched(sample.second);
          });
 }
 

@@ -107,7 +107,7 @@ void deblur(const sensor_msgs::ImageConstPtr& message, fast_edi::ExposureInstant
           static_cast<std::uint16_t>(frame.image.size.height - 1), frame.stamp_ns + kMs, false},
          {0, 0, frame.stamp_ns + 20 * kMs, true}});
     const fast_edi::WireEvents events = fast_edi::testing::wireView(records);
-    comparison.addEvents(events);
+    comparison.addEvents(events, frame.image.size, {});
     deblurrer.addEvents(events, frame.image.size, 1, 0);
   }
   deblurrer.addFrame(frame, 1);

@@ -45,7 +45,6 @@ DeblurParameters anyParameters(FuzzedDataProvider& input) {
   parameters.stamp_reference = input.ConsumeBool() ? parameters.reference : instant();
   parameters.exposure_source =
       input.ConsumeBool() ? fast_edi::ExposureSource::kTopic : fast_edi::ExposureSource::kParameter;
-  constexpr std::int64_t kUs = fast_edi::kNanosecondsPerMicrosecond;
   parameters.exposure_time_ns =
       kUs * input.ConsumeIntegralInRange<std::int64_t>(0, fast_edi::kMaxExposure_ns / kUs);
   if (input.ConsumeBool()) {

@@ -2,7 +2,7 @@
 /// For printf and its relatives, which write numbers as the locale of the process says.
 #pragma once
 
-#include <locale.h>
+#include <clocale>
 
 namespace fast_edi {
 

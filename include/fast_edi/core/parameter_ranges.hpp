@@ -30,8 +30,8 @@ struct NumberRange {
 };
 
 struct ParameterRange {
-  const char* name;  ///< that of the configuration's key
-  const char* unit;  ///< empty when it has none
+  const char* name = "";  ///< that of the configuration's key
+  const char* unit = "";  ///< empty when it has none
   NumberRange range;
 };
 

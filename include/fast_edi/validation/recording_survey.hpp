@@ -80,7 +80,7 @@ class RecordingSurvey {
   bool use_messages_ = false;  ///< exposure messages, from finish() on
   struct ArrayReading {
     ClockReading clock;
-    std::size_t epoch;
+    std::size_t epoch = 0;
   };
   void relate();
 
