@@ -11,9 +11,9 @@
 
 #include <boost/program_options.hpp>
 
+#include "fast_edi/bags/message_source.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/ros/message_source.hpp"
-#include "fast_edi/ros/topic_names.hpp"
+#include "fast_edi/messages/topic_names.hpp"
 
 namespace fast_edi {
 namespace tools {

@@ -1,5 +1,5 @@
-#include "fast_edi/core/number_text.hpp"
-#include "parameter_keys.hpp"
+#include "config/parameter_keys.hpp"
+#include "fast_edi/base/number_text.hpp"
 
 namespace fast_edi {
 namespace {

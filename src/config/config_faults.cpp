@@ -1,4 +1,4 @@
-#include "config_faults.hpp"
+#include "config/config_faults.hpp"
 
 #include <sstream>
 

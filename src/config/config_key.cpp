@@ -1,12 +1,12 @@
-#include "config_key.hpp"
+#include "config/config_key.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "config_file.hpp"
-#include "fast_edi/core/number_text.hpp"
-#include "nearest_key.hpp"
+#include "config/config_file.hpp"
+#include "config/nearest_key.hpp"
+#include "fast_edi/base/number_text.hpp"
 
 namespace fast_edi {
 namespace {

@@ -10,10 +10,10 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "config_faults.hpp"
+#include "config/config_faults.hpp"
+#include "config/parameter_draft.hpp"
+#include "fast_edi/base/parameter_ranges.hpp"
 #include "fast_edi/config/parameter_table.hpp"
-#include "fast_edi/core/parameter_ranges.hpp"
-#include "parameter_draft.hpp"
 
 namespace fast_edi {
 

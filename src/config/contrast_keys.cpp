@@ -1,4 +1,4 @@
-#include "contrast_keys.hpp"
+#include "config/contrast_keys.hpp"
 
 #include <utility>
 

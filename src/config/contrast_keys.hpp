@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "fast_edi/core/contrast_from_bias.hpp"
+#include "fast_edi/calibration/contrast_from_bias.hpp"
 
 namespace fast_edi {
 

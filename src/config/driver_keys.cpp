@@ -1,4 +1,4 @@
-#include "driver_keys.hpp"
+#include "config/driver_keys.hpp"
 
 #include <algorithm>
 #include <array>

@@ -5,11 +5,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "contrast_keys.hpp"
-#include "fast_edi/core/contrast_from_bias.hpp"
-#include "fast_edi/core/number_text.hpp"
-#include "parameter_draft.hpp"
-#include "parameter_keys.hpp"
+#include "config/contrast_keys.hpp"
+#include "config/parameter_draft.hpp"
+#include "config/parameter_keys.hpp"
+#include "fast_edi/base/number_text.hpp"
+#include "fast_edi/calibration/contrast_from_bias.hpp"
 
 namespace fast_edi {
 namespace {

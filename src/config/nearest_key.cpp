@@ -1,4 +1,4 @@
-#include "nearest_key.hpp"
+#include "config/nearest_key.hpp"
 
 #include <algorithm>
 #include <cctype>

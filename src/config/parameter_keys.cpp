@@ -1,12 +1,12 @@
-#include "parameter_keys.hpp"
+#include "config/parameter_keys.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "driver_keys.hpp"
-#include "fast_edi/core/number_text.hpp"
-#include "fast_edi/core/parameter_ranges.hpp"
+#include "config/driver_keys.hpp"
+#include "fast_edi/base/number_text.hpp"
+#include "fast_edi/base/parameter_ranges.hpp"
 
 namespace fast_edi {
 namespace {

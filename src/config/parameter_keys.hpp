@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "config_key.hpp"
+#include "config/config_key.hpp"
 
 namespace fast_edi {
 

@@ -6,11 +6,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "config_faults.hpp"
-#include "config_file.hpp"
-#include "contrast_keys.hpp"
-#include "parameter_draft.hpp"
-#include "parameter_keys.hpp"
+#include "config/config_faults.hpp"
+#include "config/config_file.hpp"
+#include "config/contrast_keys.hpp"
+#include "config/parameter_draft.hpp"
+#include "config/parameter_keys.hpp"
 
 namespace fast_edi {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <utility>
 
-#include "config_faults.hpp"
-#include "config_key.hpp"
+#include "config/config_faults.hpp"
+#include "config/config_key.hpp"
+#include "config/parameter_draft.hpp"
+#include "fast_edi/base/number_text.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/core/number_text.hpp"
-#include "parameter_draft.hpp"
 
 namespace fast_edi {
 namespace {

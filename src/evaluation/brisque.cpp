@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/brisque.hpp"
+#include "evaluation/brisque.hpp"
 
 #include <fstream>
 #include <stdexcept>
@@ -7,8 +7,8 @@
 #include <opencv2/quality/qualitybrisque.hpp>
 #endif
 
-#include "fast_edi/evaluation/capability.hpp"
-#include "fast_edi/evaluation/image_metrics.hpp"
+#include "evaluation/capability.hpp"
+#include "evaluation/image_metrics.hpp"
 
 namespace fast_edi {
 

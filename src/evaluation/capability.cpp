@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/capability.hpp"
+#include "evaluation/capability.hpp"
 
 namespace fast_edi {
 

@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/comparison_sheet.hpp"
+#include "evaluation/comparison_sheet.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/contrast_search.hpp"
+#include "evaluation/contrast_search.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/evaluation.hpp"
+#include "evaluation/evaluation.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,12 +1,12 @@
-#include "fast_edi/evaluation/feature_matches.hpp"
+#include "evaluation/feature_matches.hpp"
 
 #include <algorithm>
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/features2d.hpp>
 
-#include "fast_edi/evaluation/image_metrics.hpp"
-#include "surf.hpp"
+#include "evaluation/image_metrics.hpp"
+#include "evaluation/surf.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/feature_tracks.hpp"
+#include "evaluation/feature_tracks.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
-#include "fast_edi/evaluation/image_metrics.hpp"
+#include "evaluation/image_metrics.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,11 +1,11 @@
-#include "fast_edi/evaluation/frame_scorer.hpp"
+#include "evaluation/frame_scorer.hpp"
 
 #include <stdexcept>
 #include <utility>
 
-#include "fast_edi/evaluation/capability.hpp"
-#include "fast_edi/evaluation/image_metrics.hpp"
-#include "fast_edi/evaluation/piqe.hpp"
+#include "evaluation/capability.hpp"
+#include "evaluation/image_metrics.hpp"
+#include "evaluation/piqe.hpp"
 
 namespace fast_edi {
 namespace {

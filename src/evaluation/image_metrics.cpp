@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/image_metrics.hpp"
+#include "evaluation/image_metrics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <opencv2/quality/qualityssim.hpp>
 #endif
 
-#include "fast_edi/evaluation/capability.hpp"
+#include "evaluation/capability.hpp"
 
 namespace fast_edi {
 namespace {

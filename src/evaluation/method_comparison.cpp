@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/method_comparison.hpp"
+#include "evaluation/method_comparison.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "fast_edi/core/deblur_counters.hpp"
-#include "fast_edi/core/double_integral.hpp"
-#include "fast_edi/core/event_stream.hpp"
-#include "fast_edi/evaluation/image_metrics.hpp"
-#include "pipeline.hpp"
+#include "evaluation/image_metrics.hpp"
+#include "evaluation/pipeline.hpp"
+#include "fast_edi/base/deblur_counters.hpp"
+#include "fast_edi/events/event_stream.hpp"
+#include "fast_edi/integral/double_integral.hpp"
 
 namespace fast_edi {
 namespace {

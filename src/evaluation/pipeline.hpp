@@ -9,9 +9,9 @@
 
 #include <opencv2/core.hpp>
 
-#include "fast_edi/core/deblurrer.hpp"
-#include "fast_edi/core/frame_sink.hpp"
-#include "fast_edi/core/parameters.hpp"
+#include "fast_edi/base/frame_sink.hpp"
+#include "fast_edi/parameters/parameters.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
 
 namespace fast_edi {
 

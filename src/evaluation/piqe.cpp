@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/piqe.hpp"
+#include "evaluation/piqe.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "fast_edi/evaluation/image_metrics.hpp"
+#include "evaluation/image_metrics.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/report.hpp"
+#include "evaluation/report.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -11,7 +11,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "fast_edi/evaluation/plot.hpp"
+#include "evaluation/plot.hpp"
 
 namespace fast_edi {
 namespace {

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "fast_edi/core/event_wire.hpp"
-#include "fast_edi/core/parameters.hpp"
-#include "fast_edi/simulation/simulation_settings.hpp"
+#include "fast_edi/events/event_wire.hpp"
+#include "fast_edi/parameters/parameters.hpp"
+#include "simulation/simulation_settings.hpp"
 
 namespace fast_edi {
 

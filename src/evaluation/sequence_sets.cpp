@@ -1,12 +1,12 @@
-#include "fast_edi/evaluation/sequence_sets.hpp"
+#include "evaluation/sequence_sets.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
-#include "fast_edi/simulation/camera_motion.hpp"
-#include "fast_edi/simulation/sensor_models.hpp"
-#include "sequence_tables.hpp"
+#include "evaluation/sequence_tables.hpp"
+#include "simulation/camera_motion.hpp"
+#include "simulation/sensor_models.hpp"
 
 namespace fast_edi {
 namespace {

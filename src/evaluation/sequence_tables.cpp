@@ -1,4 +1,4 @@
-#include "sequence_tables.hpp"
+#include "evaluation/sequence_tables.hpp"
 
 namespace fast_edi {
 namespace {

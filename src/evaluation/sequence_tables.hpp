@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fast_edi/simulation/simulation_settings.hpp"
+#include "simulation/simulation_settings.hpp"
 
 namespace fast_edi {
 

@@ -1,12 +1,12 @@
-#include "fast_edi/evaluation/sequences.hpp"
+#include "evaluation/sequences.hpp"
 
 #include <array>
 #include <map>
 #include <stdexcept>
 #include <utility>
 
-#include "fast_edi/simulation/davis_simulator.hpp"
-#include "sequence_input.hpp"
+#include "evaluation/sequence_input.hpp"
+#include "simulation/davis_simulator.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,14 +1,14 @@
-#include "fast_edi/evaluation/set_evaluation.hpp"
+#include "evaluation/set_evaluation.hpp"
 
 #include <algorithm>
 #include <map>
 #include <memory>
 #include <stdexcept>
 
-#include "fast_edi/evaluation/method_comparison.hpp"
-#include "fast_edi/simulation/davis_simulator.hpp"
-#include "pipeline.hpp"
-#include "sequence_input.hpp"
+#include "evaluation/method_comparison.hpp"
+#include "evaluation/pipeline.hpp"
+#include "evaluation/sequence_input.hpp"
+#include "simulation/davis_simulator.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/set_report.hpp"
+#include "evaluation/set_report.hpp"
 
 #include <algorithm>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/sseq.hpp"
+#include "evaluation/sseq.hpp"
 
 #include <fstream>
 #include <sstream>
@@ -8,7 +8,7 @@
 #include <svm.h>
 #endif
 
-#include "fast_edi/evaluation/capability.hpp"
+#include "evaluation/capability.hpp"
 
 namespace fast_edi {
 

@@ -5,8 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "fast_edi/evaluation/image_metrics.hpp"
-#include "fast_edi/evaluation/sseq.hpp"
+#include "evaluation/image_metrics.hpp"
+#include "evaluation/sseq.hpp"
 
 namespace fast_edi {
 namespace {

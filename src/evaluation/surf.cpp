@@ -1,11 +1,11 @@
-#include "surf.hpp"
+#include "evaluation/surf.hpp"
 
 #ifdef FAST_EDI_HAVE_DLIB
 #include <dlib/array2d.h>
 #include <dlib/image_keypoint.h>
 #endif
 
-#include "fast_edi/evaluation/capability.hpp"
+#include "evaluation/capability.hpp"
 
 namespace fast_edi {
 

@@ -6,7 +6,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "fast_edi/evaluation/feature_matches.hpp"
+#include "evaluation/feature_matches.hpp"
 
 namespace fast_edi {
 

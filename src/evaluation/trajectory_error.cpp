@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/trajectory_error.hpp"
+#include "evaluation/trajectory_error.hpp"
 
 #include <algorithm>
 #include <cmath>

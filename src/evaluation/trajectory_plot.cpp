@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/trajectory_plot.hpp"
+#include "evaluation/trajectory_plot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
-#include "fast_edi/core/number_text.hpp"
+#include "fast_edi/base/number_text.hpp"
 
 namespace fast_edi {
 namespace {

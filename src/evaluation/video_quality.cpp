@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/video_quality.hpp"
+#include "evaluation/video_quality.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 #include <opencv2/core.hpp>
 
-#include "fast_edi/core/deblurrer.hpp"
-#include "fast_edi/evaluation/image_metrics.hpp"
-#include "fast_edi/simulation/davis_simulator.hpp"
-#include "sequence_input.hpp"
+#include "evaluation/image_metrics.hpp"
+#include "evaluation/sequence_input.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
+#include "simulation/davis_simulator.hpp"
 
 namespace fast_edi {
 namespace {

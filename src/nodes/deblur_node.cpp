@@ -6,7 +6,7 @@
 #include <ros/node_handle.h>
 #include <ros/this_node.h>
 
-#include "fast_edi/ros/deblur_node.hpp"
+#include "node/deblur_node.hpp"
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "deblur_node");

@@ -5,7 +5,7 @@
 #include <nodelet/nodelet.h>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "fast_edi/ros/deblur_node.hpp"
+#include "node/deblur_node.hpp"
 
 namespace fast_edi {
 

@@ -6,7 +6,7 @@
 #include <ros/node_handle.h>
 #include <ros/this_node.h>
 
-#include "fast_edi/ros/tag_detector_node.hpp"
+#include "tag_node/tag_detector_node.hpp"
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "tag_detector");

@@ -5,7 +5,7 @@
 #include <nodelet/nodelet.h>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "fast_edi/ros/tag_detector_node.hpp"
+#include "tag_node/tag_detector_node.hpp"
 
 namespace fast_edi {
 

@@ -1,4 +1,4 @@
-#include "aedat4_header.hpp"
+#include "recording/aedat4_header.hpp"
 
 #include <tinyxml2.h>
 
@@ -9,7 +9,7 @@
 
 #include "fast_edi/recording/aedat4_reader.hpp"
 #include "fast_edi/recording/recording_error.hpp"
-#include "flatbuffer.hpp"
+#include "recording/flatbuffer.hpp"
 
 namespace fast_edi {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "fast_edi/recording/byte_source.hpp"
 #include "fast_edi/recording/recording.hpp"
-#include "packet_compression.hpp"
+#include "recording/packet_compression.hpp"
 
 namespace fast_edi {
 

@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "aedat4_header.hpp"
-#include "fast_edi/core/stamp_limits.hpp"
+#include "fast_edi/exposure/stamp_limits.hpp"
 #include "fast_edi/recording/recording_error.hpp"
-#include "flatbuffer.hpp"
-#include "packet_compression.hpp"
+#include "recording/aedat4_header.hpp"
+#include "recording/flatbuffer.hpp"
+#include "recording/packet_compression.hpp"
 
 namespace fast_edi {
 namespace {

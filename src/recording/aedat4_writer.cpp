@@ -9,11 +9,11 @@
 #include <optional>
 #include <system_error>
 
-#include "aedat4_header.hpp"
 #include "fast_edi/recording/aedat4_reader.hpp"
 #include "fast_edi/recording/recording_error.hpp"
-#include "flatbuffer_writer.hpp"
-#include "packet_compression.hpp"
+#include "recording/aedat4_header.hpp"
+#include "recording/flatbuffer_writer.hpp"
+#include "recording/packet_compression.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,4 +1,4 @@
-#include "flatbuffer.hpp"
+#include "recording/flatbuffer.hpp"
 
 #include <algorithm>
 

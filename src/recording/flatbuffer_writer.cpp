@@ -1,4 +1,4 @@
-#include "flatbuffer_writer.hpp"
+#include "recording/flatbuffer_writer.hpp"
 
 #include <algorithm>
 

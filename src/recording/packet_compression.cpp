@@ -1,4 +1,4 @@
-#include "packet_compression.hpp"
+#include "recording/packet_compression.hpp"
 
 #include <lz4frame.h>
 #include <zstd.h>

@@ -1,4 +1,4 @@
-#include "fast_edi/simulation/april_tags.hpp"
+#include "simulation/april_tags.hpp"
 
 #include <algorithm>
 #include <cmath>

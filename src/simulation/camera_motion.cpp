@@ -1,11 +1,11 @@
-#include "fast_edi/simulation/camera_motion.hpp"
+#include "simulation/camera_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <boost/random/uniform_real_distribution.hpp>
 
-#include "fast_edi/simulation/random.hpp"
+#include "simulation/random.hpp"
 
 namespace fast_edi {
 namespace {

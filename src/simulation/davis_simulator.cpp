@@ -1,4 +1,4 @@
-#include "fast_edi/simulation/davis_simulator.hpp"
+#include "simulation/davis_simulator.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fast_edi/simulation/event_sensor.hpp"
+#include "simulation/event_sensor.hpp"
 
 #include <algorithm>
 #include <cmath>

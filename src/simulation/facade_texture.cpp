@@ -3,7 +3,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "texture_brushes.hpp"
+#include "simulation/texture_brushes.hpp"
 
 namespace fast_edi {
 namespace {

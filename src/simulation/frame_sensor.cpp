@@ -1,10 +1,10 @@
-#include "fast_edi/simulation/frame_sensor.hpp"
+#include "simulation/frame_sensor.hpp"
 
 #include <cmath>
 
 #include <boost/random/normal_distribution.hpp>
 
-#include "fast_edi/core/image.hpp"
+#include "fast_edi/base/image.hpp"
 
 namespace fast_edi {
 namespace {

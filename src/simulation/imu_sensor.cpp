@@ -1,4 +1,4 @@
-#include "fast_edi/simulation/imu_sensor.hpp"
+#include "simulation/imu_sensor.hpp"
 
 #include <cmath>
 

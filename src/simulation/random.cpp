@@ -1,4 +1,4 @@
-#include "fast_edi/simulation/random.hpp"
+#include "simulation/random.hpp"
 
 namespace fast_edi {
 

@@ -1,4 +1,4 @@
-#include "fast_edi/simulation/recording_faults.hpp"
+#include "simulation/recording_faults.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "fast_edi/simulation/room.hpp"
+#include "simulation/room.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <boost/random/uniform_real_distribution.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "fast_edi/simulation/texture.hpp"
+#include "simulation/texture.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,4 +1,4 @@
-#include "fast_edi/simulation/room_trajectory.hpp"
+#include "simulation/room_trajectory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 
-#include "fast_edi/simulation/random.hpp"
-#include "jet.hpp"
+#include "simulation/jet.hpp"
+#include "simulation/random.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,4 +1,4 @@
-#include "fast_edi/simulation/scene.hpp"
+#include "simulation/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <boost/random/uniform_real_distribution.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "fast_edi/simulation/texture.hpp"
+#include "simulation/texture.hpp"
 
 namespace fast_edi {
 namespace {

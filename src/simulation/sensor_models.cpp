@@ -1,4 +1,4 @@
-#include "fast_edi/simulation/sensor_models.hpp"
+#include "simulation/sensor_models.hpp"
 
 #include <array>
 #include <stdexcept>

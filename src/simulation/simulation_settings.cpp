@@ -1,4 +1,4 @@
-#include "fast_edi/simulation/simulation_settings.hpp"
+#include "simulation/simulation_settings.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fast_edi/simulation/texture.hpp"
+#include "simulation/texture.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "texture_brushes.hpp"
+#include "simulation/texture_brushes.hpp"
 
 namespace fast_edi {
 namespace {

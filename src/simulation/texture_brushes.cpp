@@ -1,4 +1,4 @@
-#include "texture_brushes.hpp"
+#include "simulation/texture_brushes.hpp"
 
 #include <cmath>
 

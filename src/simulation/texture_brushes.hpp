@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "fast_edi/simulation/random.hpp"
+#include "simulation/random.hpp"
 
 namespace fast_edi {
 

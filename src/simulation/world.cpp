@@ -1,11 +1,11 @@
-#include "fast_edi/simulation/world.hpp"
+#include "simulation/world.hpp"
 
 #include <algorithm>
 #include <array>
 
-#include "fast_edi/simulation/camera_motion.hpp"
-#include "fast_edi/simulation/room.hpp"
-#include "fast_edi/simulation/scene.hpp"
+#include "simulation/camera_motion.hpp"
+#include "simulation/room.hpp"
+#include "simulation/scene.hpp"
 
 namespace fast_edi {
 namespace {

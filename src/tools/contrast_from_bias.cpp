@@ -9,8 +9,8 @@
 #include <boost/program_options.hpp>
 
 #include "command_line.hpp"
+#include "fast_edi/calibration/contrast_from_bias.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/core/contrast_from_bias.hpp"
 
 namespace {
 

@@ -13,16 +13,16 @@
 #include <boost/program_options.hpp>
 
 #include "command_line.hpp"
+#include "fast_edi/bags/bag_recording.hpp"
+#include "fast_edi/bags/bag_writer.hpp"
+#include "fast_edi/bags/message_source.hpp"
+#include "fast_edi/bags/open_messages.hpp"
+#include "fast_edi/messages/topic_names.hpp"
 #include "fast_edi/recording/aedat4_writer.hpp"
 #include "fast_edi/recording/open_recording.hpp"
 #include "fast_edi/recording/recording_error.hpp"
-#include "fast_edi/ros/bag_recording.hpp"
-#include "fast_edi/ros/bag_writer.hpp"
-#include "fast_edi/ros/message_source.hpp"
-#include "fast_edi/ros/open_messages.hpp"
-#include "fast_edi/ros/progress_bar.hpp"
-#include "fast_edi/ros/topic_names.hpp"
-#include "fast_edi/video/frame_folder.hpp"
+#include "film/frame_folder.hpp"
+#include "progress_bar.hpp"
 
 namespace {
 

@@ -18,17 +18,17 @@
 #include <boost/program_options.hpp>
 
 #include "command_line.hpp"
+#include "fast_edi/bags/bag_deserialise.hpp"
+#include "fast_edi/bags/bag_error.hpp"
+#include "fast_edi/bags/bag_pipeline.hpp"
+#include "fast_edi/bags/message_source.hpp"
+#include "fast_edi/bags/open_messages.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/ros/bag_deserialise.hpp"
-#include "fast_edi/ros/bag_error.hpp"
-#include "fast_edi/ros/bag_pipeline.hpp"
-#include "fast_edi/ros/image_pixels.hpp"
-#include "fast_edi/ros/message_conversion.hpp"
-#include "fast_edi/ros/message_source.hpp"
-#include "fast_edi/ros/open_messages.hpp"
-#include "fast_edi/ros/progress_bar.hpp"
-#include "fast_edi/ros/topic_names.hpp"
+#include "fast_edi/messages/image_pixels.hpp"
+#include "fast_edi/messages/message_conversion.hpp"
+#include "fast_edi/messages/topic_names.hpp"
 #include "fast_edi/tags/tag_detector.hpp"
+#include "progress_bar.hpp"
 
 namespace {
 

@@ -11,16 +11,16 @@
 #include <boost/program_options.hpp>
 
 #include "command_line.hpp"
+#include "fast_edi/bags/bag_deblurrer.hpp"
+#include "fast_edi/bags/bag_error.hpp"
+#include "fast_edi/bags/bag_reader.hpp"
+#include "fast_edi/bags/bag_writer.hpp"
+#include "fast_edi/bags/message_source.hpp"
+#include "fast_edi/bags/open_messages.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/ros/bag_deblurrer.hpp"
-#include "fast_edi/ros/bag_error.hpp"
-#include "fast_edi/ros/bag_reader.hpp"
-#include "fast_edi/ros/bag_writer.hpp"
-#include "fast_edi/ros/message_source.hpp"
-#include "fast_edi/ros/open_messages.hpp"
-#include "fast_edi/ros/progress_bar.hpp"
-#include "fast_edi/ros/topic_names.hpp"
-#include "fast_edi/video/film_writer.hpp"
+#include "fast_edi/messages/topic_names.hpp"
+#include "film/film_writer.hpp"
+#include "progress_bar.hpp"
 
 namespace {
 

@@ -14,10 +14,10 @@
 #include <boost/program_options.hpp>
 
 #include "command_line.hpp"
+#include "fast_edi/bags/bag_error.hpp"
+#include "fast_edi/bags/bag_reader.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/ros/bag_error.hpp"
-#include "fast_edi/ros/bag_reader.hpp"
-#include "fast_edi/ros/topic_names.hpp"
+#include "fast_edi/messages/topic_names.hpp"
 
 namespace {
 

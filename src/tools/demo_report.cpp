@@ -23,17 +23,17 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "command_line.hpp"
+#include "evaluation/comparison_sheet.hpp"
+#include "evaluation/image_metrics.hpp"
+#include "fast_edi/bags/bag_deserialise.hpp"
+#include "fast_edi/bags/bag_pipeline.hpp"
+#include "fast_edi/bags/bag_reader.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/evaluation/comparison_sheet.hpp"
-#include "fast_edi/evaluation/image_metrics.hpp"
-#include "fast_edi/ros/bag_deserialise.hpp"
-#include "fast_edi/ros/bag_pipeline.hpp"
-#include "fast_edi/ros/bag_reader.hpp"
-#include "fast_edi/ros/comparison_view.hpp"
-#include "fast_edi/ros/event_array.hpp"
-#include "fast_edi/ros/image_pixels.hpp"
-#include "fast_edi/ros/topic_names.hpp"
+#include "fast_edi/messages/event_array.hpp"
+#include "fast_edi/messages/image_pixels.hpp"
+#include "fast_edi/messages/topic_names.hpp"
 #include "fast_edi/tags/tag_detector.hpp"
+#include "node/comparison_view.hpp"
 
 namespace fast_edi {
 namespace {

@@ -27,11 +27,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "command_line.hpp"
-#include "fast_edi/ros/bag_writer.hpp"
-#include "fast_edi/ros/event_array.hpp"
-#include "fast_edi/simulation/davis_simulator.hpp"
-#include "fast_edi/simulation/recording_faults.hpp"
-#include "fast_edi/simulation/sensor_models.hpp"
+#include "fast_edi/bags/bag_writer.hpp"
+#include "fast_edi/messages/event_array.hpp"
+#include "simulation/davis_simulator.hpp"
+#include "simulation/recording_faults.hpp"
+#include "simulation/sensor_models.hpp"
 
 namespace {
 

@@ -18,18 +18,18 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "command_line.hpp"
+#include "evaluation/plot.hpp"
+#include "fast_edi/bags/bag_deserialise.hpp"
+#include "fast_edi/bags/bag_error.hpp"
+#include "fast_edi/bags/message_source.hpp"
+#include "fast_edi/bags/open_messages.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/evaluation/plot.hpp"
-#include "fast_edi/ros/bag_deserialise.hpp"
-#include "fast_edi/ros/bag_error.hpp"
-#include "fast_edi/ros/event_array.hpp"
-#include "fast_edi/ros/message_conversion.hpp"
-#include "fast_edi/ros/message_source.hpp"
-#include "fast_edi/ros/open_messages.hpp"
-#include "fast_edi/ros/progress_bar.hpp"
-#include "fast_edi/ros/topic_names.hpp"
-#include "fast_edi/validation/recording_validator.hpp"
-#include "fast_edi/validation/report_text.hpp"
+#include "fast_edi/messages/event_array.hpp"
+#include "fast_edi/messages/message_conversion.hpp"
+#include "fast_edi/messages/topic_names.hpp"
+#include "progress_bar.hpp"
+#include "validation/recording_validator.hpp"
+#include "validation/report_text.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "fast_edi/validation/clock_relation.hpp"
+#include "validation/clock_relation.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdlib>
 
-#include "fast_edi/core/types.hpp"
+#include "fast_edi/base/types.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,4 +1,4 @@
-#include "fast_edi/validation/coarse_match.hpp"
+#include "validation/coarse_match.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fast_edi/validation/coverage_checks.hpp"
+#include "validation/coverage_checks.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fast_edi/validation/event_statistics.hpp"
+#include "validation/event_statistics.hpp"
 
 #include <algorithm>
 #include <cmath>

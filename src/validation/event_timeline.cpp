@@ -1,4 +1,4 @@
-#include "fast_edi/validation/event_timeline.hpp"
+#include "validation/event_timeline.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "fast_edi/validation/exposure_checks.hpp"
+#include "validation/exposure_checks.hpp"
 
 #include <vector>
 

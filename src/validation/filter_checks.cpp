@@ -1,4 +1,4 @@
-#include "fast_edi/validation/filter_checks.hpp"
+#include "validation/filter_checks.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "fast_edi/validation/finding.hpp"
+#include "validation/finding.hpp"
 
 #include <cstdarg>
 #include <cstdio>
 
-#include "fast_edi/core/classic_locale.hpp"
+#include "fast_edi/base/classic_locale.hpp"
 
 namespace fast_edi {
 

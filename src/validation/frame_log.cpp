@@ -1,4 +1,4 @@
-#include "fast_edi/validation/frame_log.hpp"
+#include "validation/frame_log.hpp"
 
 #include <algorithm>
 

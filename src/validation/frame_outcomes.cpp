@@ -1,9 +1,9 @@
-#include "fast_edi/validation/frame_outcomes.hpp"
+#include "validation/frame_outcomes.hpp"
 
 #include <algorithm>
 #include <cstddef>
 
-#include "fast_edi/validation/finding.hpp"
+#include "validation/finding.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,4 +1,4 @@
-#include "fast_edi/validation/mapping_checks.hpp"
+#include "validation/mapping_checks.hpp"
 
 #include <cmath>
 #include <string>

@@ -1,4 +1,4 @@
-#include "fast_edi/validation/pair_consistency.hpp"
+#include "validation/pair_consistency.hpp"
 
 #include <algorithm>
 #include <cmath>

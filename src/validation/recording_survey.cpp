@@ -1,8 +1,8 @@
-#include "fast_edi/validation/recording_survey.hpp"
+#include "validation/recording_survey.hpp"
 
 #include <algorithm>
 
-#include "fast_edi/core/exposure_window.hpp"
+#include "fast_edi/exposure/exposure_window.hpp"
 
 namespace fast_edi {
 namespace {

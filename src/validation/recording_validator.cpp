@@ -1,16 +1,16 @@
-#include "fast_edi/validation/recording_validator.hpp"
+#include "validation/recording_validator.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 #include <utility>
 
-#include "fast_edi/validation/coverage_checks.hpp"
-#include "fast_edi/validation/exposure_checks.hpp"
-#include "fast_edi/validation/filter_checks.hpp"
-#include "fast_edi/validation/mapping_checks.hpp"
-#include "fast_edi/validation/sample_choice.hpp"
-#include "fast_edi/validation/stream_checks.hpp"
-#include "fast_edi/validation/timing_checks.hpp"
+#include "validation/coverage_checks.hpp"
+#include "validation/exposure_checks.hpp"
+#include "validation/filter_checks.hpp"
+#include "validation/mapping_checks.hpp"
+#include "validation/sample_choice.hpp"
+#include "validation/stream_checks.hpp"
+#include "validation/timing_checks.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,4 +1,4 @@
-#include "fast_edi/validation/report_text.hpp"
+#include "validation/report_text.hpp"
 
 #include <ostream>
 #include <string>

@@ -1,9 +1,9 @@
-#include "fast_edi/validation/sample_choice.hpp"
+#include "validation/sample_choice.hpp"
 
 #include <algorithm>
 #include <cstddef>
 
-#include "fast_edi/validation/coverage_checks.hpp"
+#include "validation/coverage_checks.hpp"
 
 namespace fast_edi {
 namespace {

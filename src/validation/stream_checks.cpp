@@ -1,4 +1,4 @@
-#include "fast_edi/validation/stream_checks.hpp"
+#include "validation/stream_checks.hpp"
 
 #include <cstdlib>
 #include <map>

@@ -1,9 +1,9 @@
-#include "fast_edi/validation/timing_checks.hpp"
+#include "validation/timing_checks.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fast_edi/core/contrast_from_bias.hpp"
+#include "fast_edi/calibration/contrast_from_bias.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,4 +1,4 @@
-#include "fast_edi/validation/timing_estimate.hpp"
+#include "validation/timing_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "fast_edi/validation/finding.hpp"
-#include "fast_edi/validation/pair_consistency.hpp"
+#include "validation/finding.hpp"
+#include "validation/pair_consistency.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,4 +1,4 @@
-#include "fast_edi/validation/timing_sample.hpp"
+#include "validation/timing_sample.hpp"
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "fast_edi/core/deblurrer.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
 #include "optimised_main.hpp"
 #include "support/array_kinds.hpp"
 #include "support/event_generators.hpp"

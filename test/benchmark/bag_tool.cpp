@@ -18,7 +18,7 @@
 #include <sensor_msgs/image_encodings.h>
 #include <std_msgs/Int32.h>
 
-#include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/messages/event_array.hpp"
 #include "support/event_generators.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "fast_edi/core/deblurrer.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
 #include "support/paper_lists.hpp"
 #include "support/vanilla_edi.hpp"
 

@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "fast_edi/core/event_wire.hpp"
-#include "fast_edi/core/types.hpp"
+#include "fast_edi/base/types.hpp"
+#include "fast_edi/events/event_wire.hpp"
 
 namespace fast_edi::benchmarks {
 

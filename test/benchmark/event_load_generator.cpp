@@ -27,7 +27,7 @@
 #include <std_msgs/Int32.h>
 #include <boost/program_options.hpp>
 
-#include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/messages/event_array.hpp"
 #include "support/event_generators.hpp"
 
 namespace fast_edi::benchmarks {

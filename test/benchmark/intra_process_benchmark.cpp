@@ -8,8 +8,8 @@
 #include <benchmark/benchmark.h>
 #include <ros/serialization.h>
 
-#include "fast_edi/ros/event_array.hpp"
-#include "fast_edi/ros/generated_event_array.hpp"
+#include "fast_edi/messages/event_array.hpp"
+#include "fast_edi/messages/generated_event_array.hpp"
 #include "optimised_main.hpp"
 #include "periodic_stream.hpp"
 #include "rostest/stand_in/dvs_msgs/EventArray.h"

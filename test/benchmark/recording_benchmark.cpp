@@ -15,7 +15,7 @@
 #include <std_msgs/Int32.h>
 
 #include "contender.hpp"
-#include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/messages/event_array.hpp"
 #include "optimised_main.hpp"
 #include "support/event_generators.hpp"
 #include "timing.hpp"

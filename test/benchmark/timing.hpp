@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fast_edi/core/types.hpp"
+#include "fast_edi/base/types.hpp"
 
 namespace fast_edi::benchmarks {
 

@@ -8,7 +8,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "fast_edi/core/deblurrer.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
 #include "optimised_main.hpp"
 #include "periodic_stream.hpp"
 #include "support/event_generators.hpp"

@@ -8,7 +8,7 @@
 #include <ros/serialization.h>
 #include <ros/time.h>
 
-#include "fast_edi/core/pixel_event_lists.hpp"
+#include "fast_edi/events/pixel_event_lists.hpp"
 #include "optimised_main.hpp"
 #include "periodic_stream.hpp"
 

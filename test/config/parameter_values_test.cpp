@@ -14,7 +14,7 @@
 #include "fast_edi/config/live_parameters.hpp"
 #include "fast_edi/config/parameter_table.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/core/deblurrer.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
 #include "support/event_generators.hpp"
 #include "support/pipeline_input.hpp"
 #include "support/random_schedule.hpp"

@@ -1,13 +1,13 @@
-#include "fast_edi/evaluation/brisque.hpp"
+#include "evaluation/brisque.hpp"
 
 #include <fstream>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
 
+#include "evaluation/capability.hpp"
 #include "evaluation/message_of.hpp"
 #include "evaluation/test_images.hpp"
-#include "fast_edi/evaluation/capability.hpp"
 
 namespace fast_edi {
 namespace {

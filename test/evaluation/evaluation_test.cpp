@@ -1,8 +1,8 @@
-#include "fast_edi/evaluation/evaluation.hpp"
+#include "evaluation/evaluation.hpp"
 
 #include <gtest/gtest.h>
 
-#include "fast_edi/core/deblur_counters.hpp"
+#include "fast_edi/base/deblur_counters.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,9 +1,9 @@
-#include "fast_edi/evaluation/feature_matches.hpp"
+#include "evaluation/feature_matches.hpp"
 
 #include <gmock/gmock.h>
 
+#include "evaluation/capability.hpp"
 #include "evaluation/test_images.hpp"
-#include "fast_edi/evaluation/capability.hpp"
 
 namespace fast_edi {
 namespace {

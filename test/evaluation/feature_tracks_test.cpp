@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/feature_tracks.hpp"
+#include "evaluation/feature_tracks.hpp"
 
 #include <stdexcept>
 

@@ -1,10 +1,10 @@
-#include "fast_edi/evaluation/frame_scorer.hpp"
+#include "evaluation/frame_scorer.hpp"
 
 #include <gmock/gmock.h>
 
+#include "evaluation/capability.hpp"
+#include "evaluation/image_metrics.hpp"
 #include "evaluation/test_images.hpp"
-#include "fast_edi/evaluation/capability.hpp"
-#include "fast_edi/evaluation/image_metrics.hpp"
 
 namespace fast_edi {
 namespace {

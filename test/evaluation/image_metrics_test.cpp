@@ -1,12 +1,12 @@
-#include "fast_edi/evaluation/image_metrics.hpp"
+#include "evaluation/image_metrics.hpp"
 
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <opencv2/imgproc.hpp>
 
+#include "evaluation/capability.hpp"
 #include "evaluation/test_images.hpp"
-#include "fast_edi/evaluation/capability.hpp"
 
 namespace fast_edi {
 namespace {

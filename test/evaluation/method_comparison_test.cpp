@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/method_comparison.hpp"
+#include "evaluation/method_comparison.hpp"
 
 #include <cmath>
 #include <cstdint>

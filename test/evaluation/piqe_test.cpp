@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/piqe.hpp"
+#include "evaluation/piqe.hpp"
 
 #include <cmath>
 

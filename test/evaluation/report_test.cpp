@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/report.hpp"
+#include "evaluation/report.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -10,8 +10,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "evaluation/message_of.hpp"
+#include "evaluation/plot.hpp"
 #include "evaluation/test_images.hpp"
-#include "fast_edi/evaluation/plot.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace fast_edi {

@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/sequence_sets.hpp"
+#include "evaluation/sequence_sets.hpp"
 
 #include <algorithm>
 #include <fstream>

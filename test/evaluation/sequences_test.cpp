@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/sequences.hpp"
+#include "evaluation/sequences.hpp"
 
 #include <set>
 

@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/set_evaluation.hpp"
+#include "evaluation/set_evaluation.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -8,7 +8,7 @@
 
 #include <gmock/gmock.h>
 
-#include "fast_edi/evaluation/set_report.hpp"
+#include "evaluation/set_report.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace fast_edi {

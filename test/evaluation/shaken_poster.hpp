@@ -2,8 +2,8 @@
 /// A small recording with strong blur, for tests that need the truth.
 #pragma once
 
-#include "fast_edi/core/deblurrer.hpp"
-#include "fast_edi/simulation/davis_simulator.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
+#include "simulation/davis_simulator.hpp"
 
 namespace fast_edi {
 namespace testing {

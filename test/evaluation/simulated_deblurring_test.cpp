@@ -9,11 +9,11 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "evaluation/image_metrics.hpp"
 #include "evaluation/shaken_poster.hpp"
-#include "fast_edi/core/deblurrer.hpp"
-#include "fast_edi/core/double_integral.hpp"
-#include "fast_edi/evaluation/image_metrics.hpp"
-#include "fast_edi/simulation/davis_simulator.hpp"
+#include "fast_edi/integral/double_integral.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
+#include "simulation/davis_simulator.hpp"
 #include "support/event_generators.hpp"
 #include "support/pipeline_input.hpp"
 #include "support/reference_double_integral.hpp"

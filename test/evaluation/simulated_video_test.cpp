@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "evaluation/image_metrics.hpp"
 #include "evaluation/shaken_poster.hpp"
-#include "fast_edi/core/deblurrer.hpp"
-#include "fast_edi/evaluation/image_metrics.hpp"
-#include "fast_edi/simulation/davis_simulator.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
+#include "simulation/davis_simulator.hpp"
 #include "support/event_generators.hpp"
 #include "support/pipeline_input.hpp"
 

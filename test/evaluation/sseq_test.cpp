@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/sseq.hpp"
+#include "evaluation/sseq.hpp"
 
 #include <cmath>
 #include <cstdlib>
@@ -8,9 +8,9 @@
 
 #include <gmock/gmock.h>
 
+#include "evaluation/capability.hpp"
 #include "evaluation/message_of.hpp"
 #include "evaluation/test_images.hpp"
-#include "fast_edi/evaluation/capability.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/trajectory_error.hpp"
+#include "evaluation/trajectory_error.hpp"
 
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "evaluation/message_of.hpp"
-#include "fast_edi/evaluation/trajectory_plot.hpp"
+#include "evaluation/trajectory_plot.hpp"
 
 namespace fast_edi {
 namespace {

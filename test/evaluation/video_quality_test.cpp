@@ -1,4 +1,4 @@
-#include "fast_edi/evaluation/video_quality.hpp"
+#include "evaluation/video_quality.hpp"
 
 #include <sstream>
 #include <stdexcept>

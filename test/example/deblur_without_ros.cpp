@@ -3,8 +3,8 @@
 #include <iostream>
 #include <vector>
 
-#include "fast_edi/core/deblurrer.hpp"
-#include "fast_edi/core/stored_image.hpp"
+#include "fast_edi/base/stored_image.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
 
 namespace {
 

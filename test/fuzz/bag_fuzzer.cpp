@@ -11,11 +11,11 @@
 
 #include <ros/console.h>
 
-#include "fast_edi/ros/bag_deblurrer.hpp"
-#include "fast_edi/ros/bag_error.hpp"
-#include "fast_edi/ros/bag_reader.hpp"
-#include "fast_edi/ros/bag_writer.hpp"
-#include "fast_edi/ros/topic_names.hpp"
+#include "fast_edi/bags/bag_deblurrer.hpp"
+#include "fast_edi/bags/bag_error.hpp"
+#include "fast_edi/bags/bag_reader.hpp"
+#include "fast_edi/bags/bag_writer.hpp"
+#include "fast_edi/messages/topic_names.hpp"
 #include "fuzz/fuzzing.hpp"
 #include "support/temporary_directory.hpp"
 

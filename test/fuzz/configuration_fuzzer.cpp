@@ -14,11 +14,11 @@
 #include <dynamic_reconfigure/Config.h>
 #include <fuzzer/FuzzedDataProvider.h>
 
+#include "fast_edi/calibration/contrast_from_bias.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/core/camera_response.hpp"
-#include "fast_edi/core/contrast_from_bias.hpp"
-#include "fast_edi/ros/bias_update.hpp"
+#include "fast_edi/latent/camera_response.hpp"
 #include "fuzz/fuzzing.hpp"
+#include "node/bias_update.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace {

@@ -12,8 +12,8 @@
 
 #include <ros/serialization.h>
 
-#include "fast_edi/core/deblurrer.hpp"
-#include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/messages/event_array.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
 #include "fuzz/fuzzing.hpp"
 #include "support/pipeline_input.hpp"
 #include "support/schedule_checker.hpp"

@@ -13,12 +13,12 @@
 #include <sensor_msgs/image_encodings.h>
 #include <boost/make_shared.hpp>
 
-#include "fast_edi/core/deblurrer.hpp"
-#include "fast_edi/ros/bag_deserialise.hpp"
-#include "fast_edi/ros/comparison_view.hpp"
-#include "fast_edi/ros/message_conversion.hpp"
-#include "fast_edi/ros/message_frame_sink.hpp"
+#include "fast_edi/bags/bag_deserialise.hpp"
+#include "fast_edi/messages/message_conversion.hpp"
+#include "fast_edi/messages/message_frame_sink.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
 #include "fuzz/fuzzing.hpp"
+#include "node/comparison_view.hpp"
 #include "support/event_generators.hpp"
 
 namespace {

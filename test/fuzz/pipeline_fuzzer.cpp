@@ -7,7 +7,7 @@
 
 #include <fuzzer/FuzzedDataProvider.h>
 
-#include "fast_edi/core/deblurrer.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
 #include "fuzz/fuzzing.hpp"
 #include "support/event_generators.hpp"
 #include "support/pipeline_input.hpp"

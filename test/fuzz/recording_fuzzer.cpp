@@ -9,10 +9,10 @@
 #include <string>
 #include <variant>
 
-#include "fast_edi/core/stamp_limits.hpp"
+#include "fast_edi/bags/recording_messages.hpp"
+#include "fast_edi/exposure/stamp_limits.hpp"
 #include "fast_edi/recording/open_recording.hpp"
 #include "fast_edi/recording/recording_error.hpp"
-#include "fast_edi/ros/recording_messages.hpp"
 #include "fuzz/fuzzing.hpp"
 
 namespace {

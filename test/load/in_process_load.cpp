@@ -28,10 +28,10 @@
 #include <ros/spinner.h>
 #include <boost/program_options.hpp>
 
-#include "fast_edi/ros/deblur_node.hpp"
 #include "load/load_camera.hpp"
 #include "load/recovery.hpp"
 #include "load/throttled_spinner.hpp"
+#include "node/deblur_node.hpp"
 #include "rostest/node_client.hpp"
 #include "rostest/ros_master.hpp"
 

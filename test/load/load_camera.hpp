@@ -15,8 +15,8 @@
 #include <ros/publisher.h>
 #include <sensor_msgs/Image.h>
 
-#include "fast_edi/core/types.hpp"
-#include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/base/types.hpp"
+#include "fast_edi/messages/event_array.hpp"
 
 namespace fast_edi::load {
 

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "fast_edi/core/stamp_limits.hpp"
+#include "fast_edi/exposure/stamp_limits.hpp"
 #include "fast_edi/recording/aedat4_reader.hpp"
 #include "fast_edi/recording/aedat4_writer.hpp"
 #include "fast_edi/recording/recording_error.hpp"

@@ -1,7 +1,7 @@
 // Event arrays of a publisher in the same process, with a stand-in for dvs_msgs. The program is
 // compiled with FAST_EDI_HAVE_DVS_MSGS, see CMakeLists.txt.
 
-#include "fast_edi/ros/event_subscription.hpp"
+#include "node/event_subscription.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -15,7 +15,7 @@
 #include <ros/node_handle.h>
 #include <boost/make_shared.hpp>
 
-#include "fast_edi/ros/generated_event_array.hpp"
+#include "fast_edi/messages/generated_event_array.hpp"
 
 namespace fast_edi {
 namespace test {

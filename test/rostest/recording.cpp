@@ -7,7 +7,7 @@
 #include <rosbag/bag.h>
 #include <boost/make_shared.hpp>
 
-#include "fast_edi/ros/message_frame_sink.hpp"
+#include "fast_edi/messages/message_frame_sink.hpp"
 
 namespace fast_edi {
 namespace test {

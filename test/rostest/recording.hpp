@@ -11,9 +11,9 @@
 #include <sensor_msgs/Image.h>
 #include <std_msgs/Int32.h>
 
-#include "fast_edi/core/deblurrer.hpp"
-#include "fast_edi/core/parameters.hpp"
-#include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/messages/event_array.hpp"
+#include "fast_edi/parameters/parameters.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
 
 namespace fast_edi {
 namespace test {

@@ -1,5 +1,5 @@
 // The simulator as an oracle: its events, frames and truth must agree with each other.
-#include "fast_edi/simulation/davis_simulator.hpp"
+#include "simulation/davis_simulator.hpp"
 
 #include <cmath>
 #include <set>

@@ -1,5 +1,5 @@
 // The event pixel against hand-made irradiance, where every event can be foretold.
-#include "fast_edi/simulation/event_sensor.hpp"
+#include "simulation/event_sensor.hpp"
 
 #include <cmath>
 #include <map>

@@ -1,5 +1,5 @@
 // Faults planted into a simulated recording do what their names say.
-#include "fast_edi/simulation/recording_faults.hpp"
+#include "simulation/recording_faults.hpp"
 
 #include <cstdint>
 #include <stdexcept>

@@ -1,5 +1,5 @@
 // The room: the way through it, the inertial sensor and what the camera sees.
-#include "fast_edi/simulation/room.hpp"
+#include "simulation/room.hpp"
 
 #include <cmath>
 #include <set>
@@ -9,8 +9,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "fast_edi/simulation/davis_simulator.hpp"
-#include "fast_edi/simulation/imu_sensor.hpp"
+#include "simulation/davis_simulator.hpp"
+#include "simulation/imu_sensor.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace fast_edi {

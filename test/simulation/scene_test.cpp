@@ -1,5 +1,5 @@
 // Plane, tags and camera path.
-#include "fast_edi/simulation/scene.hpp"
+#include "simulation/scene.hpp"
 
 #include <cstdio>
 #include <string>
@@ -10,10 +10,10 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "fast_edi/simulation/april_tags.hpp"
-#include "fast_edi/simulation/camera_motion.hpp"
-#include "fast_edi/simulation/davis_simulator.hpp"
 #include "fast_edi/tags/tag_detector.hpp"
+#include "simulation/april_tags.hpp"
+#include "simulation/camera_motion.hpp"
+#include "simulation/davis_simulator.hpp"
 
 namespace fast_edi {
 namespace {

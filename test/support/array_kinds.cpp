@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fast_edi/core/event_wire.hpp"
+#include "fast_edi/events/event_wire.hpp"
 
 namespace fast_edi::testing {
 namespace {

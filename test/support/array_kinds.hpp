@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fast_edi/core/types.hpp"
+#include "fast_edi/base/types.hpp"
 
 namespace fast_edi::testing {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "fast_edi/core/event_wire.hpp"
-#include "fast_edi/core/types.hpp"
+#include "fast_edi/base/types.hpp"
+#include "fast_edi/events/event_wire.hpp"
 
 namespace fast_edi::testing {
 

@@ -19,9 +19,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "fast_edi/core/contrast_threshold.hpp"
-#include "fast_edi/core/event_wire.hpp"
-#include "fast_edi/core/types.hpp"
+#include "fast_edi/base/contrast_threshold.hpp"
+#include "fast_edi/base/types.hpp"
+#include "fast_edi/events/event_wire.hpp"
 
 namespace fast_edi::testing {
 

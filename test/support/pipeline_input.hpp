@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "fast_edi/core/deblurrer.hpp"
-#include "fast_edi/core/event_wire.hpp"
+#include "fast_edi/events/event_wire.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
 
 namespace fast_edi::testing {
 

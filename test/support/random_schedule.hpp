@@ -9,9 +9,9 @@
 #include <random>
 #include <vector>
 
-#include "fast_edi/core/frame_sink.hpp"
-#include "fast_edi/core/image.hpp"
-#include "fast_edi/core/types.hpp"
+#include "fast_edi/base/frame_sink.hpp"
+#include "fast_edi/base/image.hpp"
+#include "fast_edi/base/types.hpp"
 
 namespace fast_edi::testing {
 

@@ -23,9 +23,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "fast_edi/core/contrast_threshold.hpp"
-#include "fast_edi/core/level_model.hpp"
-#include "fast_edi/core/types.hpp"
+#include "fast_edi/base/contrast_threshold.hpp"
+#include "fast_edi/base/level_model.hpp"
+#include "fast_edi/base/types.hpp"
 
 namespace fast_edi::testing {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "fast_edi/core/event_wire.hpp"
-#include "fast_edi/core/pixel_event_lists.hpp"
-#include "fast_edi/core/stamp_limits.hpp"
+#include "fast_edi/events/event_wire.hpp"
+#include "fast_edi/events/pixel_event_lists.hpp"
+#include "fast_edi/exposure/stamp_limits.hpp"
 
 namespace fast_edi::testing {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "fast_edi/core/deblurrer.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
 #include "support/pipeline_input.hpp"
 
 namespace fast_edi::testing {

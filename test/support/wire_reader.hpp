@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "fast_edi/core/event_wire.hpp"
+#include "fast_edi/events/event_wire.hpp"
 
 namespace fast_edi::testing {
 

@@ -14,7 +14,7 @@
 
 #include <boost/make_shared.hpp>
 
-#include "fast_edi/ros/bag_reader.hpp"
+#include "fast_edi/bags/bag_reader.hpp"
 #include "rostest/recording.hpp"
 #include "support/command.hpp"
 #include "support/temporary_directory.hpp"

@@ -16,12 +16,12 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include "fast_edi/core/deblur_counters.hpp"
-#include "fast_edi/ros/deblur_node.hpp"
-#include "fast_edi/simulation/recording_faults.hpp"
+#include "fast_edi/base/deblur_counters.hpp"
+#include "node/deblur_node.hpp"
 #include "rostest/node_client.hpp"
 #include "rostest/recording.hpp"
 #include "rostest/ros_master.hpp"
+#include "simulation/recording_faults.hpp"
 #include "support/command.hpp"
 #include "support/temporary_directory.hpp"
 

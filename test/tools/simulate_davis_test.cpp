@@ -13,8 +13,8 @@
 #include <sensor_msgs/Image.h>
 #include <std_msgs/Int32.h>
 
-#include "fast_edi/core/event_wire.hpp"
-#include "fast_edi/ros/event_array.hpp"
+#include "fast_edi/events/event_wire.hpp"
+#include "fast_edi/messages/event_array.hpp"
 #include "support/command.hpp"
 #include "support/temporary_directory.hpp"
 

@@ -14,7 +14,7 @@
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/Imu.h>
 
-#include "fast_edi/core/types.hpp"
+#include "fast_edi/base/types.hpp"
 #include "support/command.hpp"
 #include "support/temporary_directory.hpp"
 

@@ -1,12 +1,12 @@
 // Clocks compared by the times of recording, with the delays that recording has.
-#include "fast_edi/validation/clock_relation.hpp"
+#include "validation/clock_relation.hpp"
 
 #include <functional>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "fast_edi/core/types.hpp"
+#include "fast_edi/base/types.hpp"
 
 namespace fast_edi {
 namespace {

@@ -1,6 +1,6 @@
 // The wide search where there is nothing to find; recording_validator_test.cpp has simulations of
 // each orientation.
-#include "fast_edi/validation/coarse_match.hpp"
+#include "validation/coarse_match.hpp"
 
 #include <random>
 #include <vector>

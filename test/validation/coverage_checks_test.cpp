@@ -1,5 +1,5 @@
 // Times without events.
-#include "fast_edi/validation/coverage_checks.hpp"
+#include "validation/coverage_checks.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // Times between events, and pixels that never rest.
-#include "fast_edi/validation/event_statistics.hpp"
+#include "validation/event_statistics.hpp"
 
 #include <gtest/gtest.h>
 

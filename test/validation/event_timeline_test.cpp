@@ -1,5 +1,5 @@
 // When events came.
-#include "fast_edi/validation/event_timeline.hpp"
+#include "validation/event_timeline.hpp"
 
 #include <gtest/gtest.h>
 

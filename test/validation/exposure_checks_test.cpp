@@ -1,5 +1,5 @@
 // The exposure topic by itself.
-#include "fast_edi/validation/exposure_checks.hpp"
+#include "validation/exposure_checks.hpp"
 
 #include <gmock/gmock.h>
 

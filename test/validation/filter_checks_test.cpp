@@ -1,5 +1,5 @@
 // Filters by the traces that they leave in the times between events.
-#include "fast_edi/validation/filter_checks.hpp"
+#include "validation/filter_checks.hpp"
 
 #include <cmath>
 #include <functional>
@@ -9,8 +9,8 @@
 
 #include <gmock/gmock.h>
 
-#include "fast_edi/simulation/davis_simulator.hpp"
-#include "fast_edi/simulation/recording_faults.hpp"
+#include "simulation/davis_simulator.hpp"
+#include "simulation/recording_faults.hpp"
 
 namespace fast_edi {
 namespace {

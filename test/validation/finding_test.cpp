@@ -1,5 +1,5 @@
 // Words of reports.
-#include "fast_edi/validation/finding.hpp"
+#include "validation/finding.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Frames and the exposure messages that belong to them.
-#include "fast_edi/validation/frame_log.hpp"
+#include "validation/frame_log.hpp"
 
 #include <gtest/gtest.h>
 

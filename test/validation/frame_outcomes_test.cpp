@@ -1,5 +1,5 @@
 // Frames counted without their pixels, as the pipeline counts them.
-#include "fast_edi/validation/frame_outcomes.hpp"
+#include "validation/frame_outcomes.hpp"
 
 #include <stdexcept>
 

@@ -1,5 +1,5 @@
 // Events turned against the frames: the one parameter that undoes it.
-#include "fast_edi/validation/mapping_checks.hpp"
+#include "validation/mapping_checks.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,9 +1,9 @@
 // What frames and events say, for exposures that are assumed.
-#include "fast_edi/validation/pair_consistency.hpp"
+#include "validation/pair_consistency.hpp"
 
 #include <gtest/gtest.h>
 
-#include "fast_edi/simulation/davis_simulator.hpp"
+#include "simulation/davis_simulator.hpp"
 #include "support/event_generators.hpp"
 
 namespace fast_edi {

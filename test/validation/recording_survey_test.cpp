@@ -1,5 +1,5 @@
 // What the first pass gathers.
-#include "fast_edi/validation/recording_survey.hpp"
+#include "validation/recording_survey.hpp"
 
 #include <gtest/gtest.h>
 

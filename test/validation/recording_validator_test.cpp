@@ -1,5 +1,5 @@
 // Simulated recordings through the whole validator: exposures, stamps and clocks that are known.
-#include "fast_edi/validation/recording_validator.hpp"
+#include "validation/recording_validator.hpp"
 
 #include <algorithm>
 #include <memory>

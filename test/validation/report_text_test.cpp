@@ -1,5 +1,5 @@
 // The report for people.
-#include "fast_edi/validation/report_text.hpp"
+#include "validation/report_text.hpp"
 
 #include <sstream>
 

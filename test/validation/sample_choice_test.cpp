@@ -1,5 +1,5 @@
 // Pairs of frames for the estimate.
-#include "fast_edi/validation/sample_choice.hpp"
+#include "validation/sample_choice.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "fast_edi/simulation/davis_simulator.hpp"
-#include "fast_edi/simulation/recording_faults.hpp"
-#include "fast_edi/validation/recording_validator.hpp"
+#include "simulation/davis_simulator.hpp"
+#include "simulation/recording_faults.hpp"
 #include "support/event_generators.hpp"
+#include "validation/recording_validator.hpp"
 
 namespace fast_edi::testing {
 

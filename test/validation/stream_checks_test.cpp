@@ -1,5 +1,5 @@
 // Messages, sizes, encodings, stamps and clocks.
-#include "fast_edi/validation/stream_checks.hpp"
+#include "validation/stream_checks.hpp"
 
 #include <gmock/gmock.h>
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "fast_edi/core/event_wire.hpp"
-#include "fast_edi/validation/finding.hpp"
-#include "fast_edi/validation/recording_survey.hpp"
+#include "fast_edi/events/event_wire.hpp"
+#include "validation/finding.hpp"
+#include "validation/recording_survey.hpp"
 
 namespace fast_edi::testing {
 

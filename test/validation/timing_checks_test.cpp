@@ -1,5 +1,5 @@
 // From an estimate to what is to be set.
-#include "fast_edi/validation/timing_checks.hpp"
+#include "validation/timing_checks.hpp"
 
 #include <gmock/gmock.h>
 

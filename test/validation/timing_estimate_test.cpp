@@ -1,5 +1,5 @@
 // The estimate where there is nothing to estimate; recording_validator_test.cpp has simulations.
-#include "fast_edi/validation/timing_estimate.hpp"
+#include "validation/timing_estimate.hpp"
 
 #include <random>
 #include <vector>

@@ -1,5 +1,5 @@
 // Samples taken out of a recording.
-#include "fast_edi/validation/timing_sample.hpp"
+#include "validation/timing_sample.hpp"
 
 #include <algorithm>
 #include <cmath>

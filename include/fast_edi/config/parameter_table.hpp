@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fast_edi/core/parameter_ranges.hpp"
+#include "fast_edi/base/parameter_ranges.hpp"
 
 namespace fast_edi {
 

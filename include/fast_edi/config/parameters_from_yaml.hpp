@@ -11,17 +11,11 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "fast_edi/core/contrast_from_bias.hpp"
-#include "fast_edi/core/parameters.hpp"
+#include "fast_edi/calibration/contrast_from_bias.hpp"
+#include "fast_edi/config/parameter_error.hpp"
+#include "fast_edi/parameters/parameters.hpp"
 
 namespace fast_edi {
-
-/// A configuration that cannot be used. what() names the key, what was found and what was expected,
-/// one line for each fault.
-class ParameterError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Keys that only the ROS layer uses; the core has no notion of them.
 struct RosParameters {

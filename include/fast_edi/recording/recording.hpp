@@ -14,8 +14,8 @@
 #include <variant>
 #include <vector>
 
-#include "fast_edi/core/contrast_from_bias.hpp"
-#include "fast_edi/core/types.hpp"
+#include "fast_edi/base/types.hpp"
+#include "fast_edi/calibration/contrast_from_bias.hpp"
 
 namespace fast_edi {
 

@@ -1,0 +1,58 @@
+/// \file
+/// ROS messages as a recording: what writers of other formats take.
+///
+/// Each frame waits for the exposure message behind it; one that is followed by the next frame
+/// first has no known exposure.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sensor_msgs/Image.h>
+
+#include "fast_edi/bags/message_source.hpp"
+#include "fast_edi/messages/topic_names.hpp"
+#include "fast_edi/recording/recording.hpp"
+
+namespace fast_edi {
+
+class BagRecording : public Recording {
+ public:
+  /// \param path of a rosbag
+  /// \param topics frames, events and exposures; IMU samples are those of the only
+  ///        topic that has them
+  /// \throws RecordingError when it is none, or has no events and no frames on these topics
+  BagRecording(const std::string& path, const TopicNames& topics);
+  ~BagRecording() override;
+
+  std::string format() const override { return "rosbag"; }
+  const std::vector<RecordedStream>& streams() const override { return streams_; }
+  bool next(RecordingItem& item) override;
+  const std::vector<RecordingDamage>& damage() const override { return source_->damage(); }
+  std::uint64_t position() const override { return source_->position(); }
+  std::uint64_t length() const override { return source_->length(); }
+  std::uint64_t fileSize() const override { return source_->fileSize(); }
+
+  /// Messages that contradict themselves, and were left out.
+  std::uint64_t malformed() const { return malformed_; }
+
+ private:
+  bool take(const BagMessage& message, RecordingItem& item);
+  bool giveFrame(std::optional<std::int64_t> exposure_ns, RecordingItem& item);
+  void findSizes(const std::string& path);
+
+  TopicNames topics_;
+  std::string imu_topic_;
+  std::unique_ptr<MessageSource> source_;
+  std::vector<RecordedStream> streams_;
+  sensor_msgs::ImagePtr waiting_;  ///< for its exposure
+  sensor_msgs::ImagePtr given_;
+  std::vector<Event> events_;
+  std::int64_t record_ns_ = 0;
+  std::uint64_t malformed_ = 0;
+};
+
+}  // namespace fast_edi

@@ -1,0 +1,67 @@
+/// \file
+/// Writes a bag that appears under its name only when it is complete.
+#pragma once
+
+#include <cerrno>
+#include <memory>
+#include <string>
+
+#include <ros/time.h>
+#include <rosbag/bag.h>
+
+#include "fast_edi/bags/message_source.hpp"
+
+namespace fast_edi {
+
+/// rosbag::Bag writing to PATH.active, renamed to PATH by close().
+class BagWriter {
+ public:
+  /// \param input_path the bag that is being read: refused as an output
+  /// \param compression "none", "bz2" or "lz4"
+  /// \param overwrite replace \p path and PATH.active if they exist
+  /// \throws BagError for a path that cannot or may not be written
+  BagWriter(const std::string& path, const std::string& input_path, const std::string& compression,
+            bool overwrite);
+  /// Leaves PATH.active behind when close() was not reached.
+  ~BagWriter();
+  BagWriter(const BagWriter&) = delete;
+  BagWriter& operator=(const BagWriter&) = delete;
+
+  /// The same bytes under the same topic, type and connection header at the same record time.
+  /// \throws BagError
+  void copy(const BagMessage& message);
+
+  /// A message of ours.
+  /// \throws BagError
+  template <typename Message>
+  void write(const std::string& topic, const ros::Time& time, const Message& message) {
+    guarded([&] { bag_->write(topic, writableTime(time), message); });
+  }
+
+  /// Writes the index and gives the file its name.
+  /// \throws BagError
+  void close();
+
+ private:
+  /// rosbag refuses record times before the first nanosecond.
+  static ros::Time writableTime(const ros::Time& time) {
+    return time < ros::TIME_MIN ? ros::TIME_MIN : time;
+  }
+
+  template <typename Action>
+  void guarded(Action action) {
+    errno = 0;
+    try {
+      action();
+    } catch (const std::exception& error) {
+      fail(error);
+    }
+  }
+  [[noreturn]] void fail(const std::exception& error);
+
+  std::string path_;
+  std::string active_path_;
+  std::unique_ptr<rosbag::Bag> bag_;
+};
+
+}  // namespace fast_edi

@@ -1,0 +1,161 @@
+/// \file
+/// What bias settings and stamps leave open, learned from the recording itself: the contrast
+/// thresholds (biases give them to some 10 %) and the delay of the events behind the frames (the
+/// photoreceptor's bandwidth: 0.5 ms in bright and 5 ms in dim light).
+///
+/// Two consecutive frames and the events of both exposures and in between say the same thing twice.
+/// With B the blurry frames, E their double integrals and l the change of level by the events
+/// between the two reference times,
+///
+///     r = log(B2 / E2) - log(B1 / E1) - l
+///
+/// is zero if the model is right. If not, to first order,
+///
+///     r = dc_on x_on - dc_off x_off + dt x_t,
+///     x_p = sum over events of polarity p of w(t),   x_t = n_2 / T_2 - n_1 / T_1,
+///
+/// w rising from 0 to 1 during the first exposure, 1 between them, and falling back to 0 during the
+/// second: what the mean levels of the exposures differ by, counted in events; n_i the change of
+/// level by the events during exposure i of length T_i. An event with a ramp (see level_model.hpp)
+/// counts there at the mean time of its step, h r / 2 before it. Both B and x are means over
+/// exposures, so neither blur nor the quantisation at one instant biases the fit, as it would for a
+/// fit of log L2 - log L1 to counts of events.
+///
+/// Fit: least squares over pixels that tell something (|x_on - x_off| >= 3, hardly any events back
+/// and forth, no grey level near black or saturation), weighted by the square of the intensity
+/// (events of dark pixels come later than those of bright ones, in which errors are seen), robust
+/// (Cauchy weights), with a ridge towards the nominal values, exponential forgetting, and limits:
+/// thresholds within 30 % of nominal, the delay within 5 ms.
+///
+/// What is taken over: thresholds only when they differ from nominal by more than such a fit can be
+/// wrong (6 to 10 %); of the delay ln 2, where edges behind a low-pass have half of their height.
+/// An offset between the clocks is no low-pass: it belongs into `time_offset`.
+///
+/// Each pair is used until kEagerFits have told something, then one of kRestFrames; the same while
+/// kPatience pairs on end have told nothing. A pair of more than Settings::most_events tells more
+/// than enough: a band of rows with about that many is used, the next pair takes the next band, and
+/// comes later by a frame for each most_events.
+///
+/// Recordings without events between exposures exist (a driver dropped them); there the fit would
+/// be wrong and is not made.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "fast_edi/base/contrast_threshold.hpp"
+#include "fast_edi/base/image.hpp"
+#include "fast_edi/base/level_model.hpp"
+#include "fast_edi/base/types.hpp"
+#include "fast_edi/events/pixel_event_lists.hpp"
+#include "fast_edi/latent/camera_response.hpp"
+
+namespace fast_edi {
+
+/// What is learned.
+struct Calibration {
+  ContrastThresholds thresholds;
+  /// By this much the events of an edge come after its light, half of them earlier. [ns]
+  std::int64_t event_delay_ns = 0;
+};
+
+/// What became of a frame.
+enum class CalibrationOutcome {
+  kNoPair,           ///< nothing to compare with
+  kNoEventsBetween,  ///< the stream holds no events between the exposures
+  kTooFewPixels,     ///< nothing moved enough
+  kFitted,
+};
+
+class OnlineCalibration {
+ public:
+  static constexpr int kEagerFits = 20;
+  static constexpr int kRestFrames = 10;
+  static constexpr int kPatience = 5;
+
+  struct Settings {
+    bool contrast = true;                   ///< learn the thresholds
+    bool delay = true;                      ///< learn the delay
+    std::uint64_t most_events = 2'000'000;  ///< of a pair
+    LevelModel level = {};                  ///< that the gains are made with
+  };
+
+  /// A deblurred frame. Times are event times: shifted by time offset and delay already.
+  struct Frame {
+    ExposureInterval window;
+    std::int64_t reference_ns = 0;
+    ImageView image;              ///< the blurry one
+    const float* gain = nullptr;  ///< of DoubleIntegral::close(), not filtered
+  };
+
+  OnlineCalibration(SensorSize size, ContrastThresholds nominal, Settings settings);
+
+  /// True when the next frame is needed. Each pair is used at first; once enough has been learned,
+  /// one of several, which follows slow changes at a fraction of the cost.
+  bool wantsNextFrame() const { return resting_ == 0; }
+  /// Instead of addFrame() for a frame that is not needed.
+  void skipFrame();
+  /// Compares a frame with the one before it, and takes over what follows from that if it differs
+  /// noticeably from what is in force.
+  /// \pre \p lists hold all events from neededFrom() to the end of the frame's window
+  CalibrationOutcome addFrame(const Frame& frame, const CameraResponse& response,
+                              const PixelEventLists& lists);
+  /// Forgets the frame before (after a gap), but not what was learned.
+  void interrupt() { have_previous_ = false; }
+
+  /// Start of the earliest event that the next addFrame() needs; INT64_MAX while it needs none.
+  std::int64_t neededFrom() const;
+  /// To be used for the next frame.
+  const Calibration& inForce() const { return in_force_; }
+  const ContrastThresholds& nominal() const { return nominal_; }
+  std::size_t memoryBytes() const;
+
+ private:
+  /// What the events of a pair of frames say about one pixel.
+  struct PixelEvidence {
+    float on;     ///< x_on
+    float off;    ///< x_off
+    float slope;  ///< x_t [1/ms]
+    float level;  ///< l
+    float count;  ///< events
+  };
+  /// Weighted X'X and X'(r + X theta), theta = (c_on, c_off, delay in ms).
+  struct NormalEquations {
+    Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+  };
+
+  /// Pixels of adjacent rows.
+  struct Band {
+    std::size_t first_pixel;
+    std::size_t pixels;
+  };
+
+  void loadLogLatent(const Frame& frame, const CameraResponse& response);
+  Band nextBand(std::uint64_t events);
+  Band gather(const Frame& frame, const PixelEventLists& lists);
+  std::size_t fit(const Band& band, NormalEquations& equations) const;
+  void takeOver();
+
+  SensorSize size_;
+  ContrastThresholds nominal_;
+  Settings settings_;
+  Calibration in_force_;
+  NormalEquations learned_;
+  int fits_ = 0;
+  int useless_pairs_ = 0;  ///< since the last fit
+  int resting_ = 0;        ///< frames until the next one is needed
+  int next_row_ = 0;       ///< of the next band
+
+  bool have_previous_ = false;
+  ExposureInterval previous_window_;
+  std::int64_t previous_reference_ns_ = 0;
+  double log_typical_ = 0.0;       ///< log exposure of a typical grey
+  std::vector<float> log_latent_;  ///< log B + log gain; NaN where B is no evidence
+  std::vector<float> previous_log_latent_;
+  std::vector<PixelEvidence> evidence_;  ///< of the band, from its first pixel on
+};
+
+}  // namespace fast_edi

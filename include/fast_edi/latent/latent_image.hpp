@@ -1,0 +1,58 @@
+/// \file
+/// The last stage: from a blurry frame and the gains of its pixels to the latent image.
+///
+///     gains -> GainFilter -> saturated pixels -> CameraResponse::applyGain -> FrameNoiseFilter
+///     -> outgoing image
+///
+/// The filters are what goes beyond plain EDI; each can be switched off, all with
+/// FilterParameters::enabled.
+///
+/// Saturated pixels. A level cut off at the highest digital number is a lower bound of the mean
+/// over the exposure. A gain little below 1 (lamps that flicker) would turn it grey without cause,
+/// so it counts as 1; a gain of less than 1/4 says that something bright has moved away, and stays.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "fast_edi/base/image.hpp"
+#include "fast_edi/events/exposure_events.hpp"
+#include "fast_edi/filters/filter_parameters.hpp"
+#include "fast_edi/filters/frame_noise_estimate.hpp"
+#include "fast_edi/filters/frame_noise_filter.hpp"
+#include "fast_edi/filters/gain_filter.hpp"
+#include "fast_edi/latent/camera_response.hpp"
+
+namespace fast_edi {
+
+class LatentImage {
+ public:
+  explicit LatentImage(const FilterParameters& parameters);
+
+  /// Takes over other parameters; the filters are rebuilt when next used.
+  void setParameters(const FilterParameters& parameters);
+
+  /// \param gain width x height gains of DoubleIntegral::close(); filtered in place
+  /// \param events of the exposure of the blurry frame
+  /// \pre blurry and out have the same size and format
+  void write(const ImageView& blurry, float* gain, const ExposureEvents& events,
+             const CameraResponse& response, const MutableImageView& out);
+
+  std::size_t memoryBytes() const;
+
+ private:
+  void fit(const ImageView& blurry);
+  void loadLevels(const ImageView& blurry);
+  void raiseSaturated(float* gain) const;
+
+  FilterParameters parameters_;
+  SensorSize size_;
+  PixelFormat format_ = PixelFormat::kMono8;
+  std::unique_ptr<GainFilter> gain_filter_;
+  std::unique_ptr<FrameNoiseFilter> frame_noise_filter_;
+  FrameNoiseEstimate noise_estimate_;
+  std::vector<float> level_dn_;  ///< of the blurry frame [8-bit DN]; the lowest of its channels
+  std::vector<float> channel_dn_;
+};
+
+}  // namespace fast_edi

@@ -1,0 +1,108 @@
+/// \file
+/// The whole pipeline without ROS: events, frames and exposure messages go in as they arrive, one
+/// image for each frame comes out. Live nodelet and `deblur_bag` both run this class.
+///
+///     events ------> EventStream -> PixelEventLists --+
+///     frames ------> ExposureWindow (window known) ---+-> DoubleIntegral -> CameraResponse -> sink
+///     exposures ---> ExposurePairing --^
+///
+/// When the sink wants a high-rate video, LatentVideo computes it behind each deblurred frame.
+///
+/// Frames wait in one queue and leave it in the order of their arrival. WindowPredictor tells
+/// DoubleIntegral beforehand which window comes next.
+///
+/// Clock. `now_ns` is the arrival time on a clock that never goes back: a steady clock live, the
+/// bag's record time offline. It serves the close timeout alone and is never compared with stamps.
+///
+/// Not thread safe: calls must not overlap. Never throws out of the add...() and advance() calls
+/// except std::bad_alloc.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "fast_edi/base/deblur_counters.hpp"
+#include "fast_edi/base/frame_sink.hpp"
+#include "fast_edi/base/types.hpp"
+#include "fast_edi/events/event_wire.hpp"
+#include "fast_edi/parameters/parameters.hpp"
+
+namespace fast_edi {
+
+/// State of the moment, for diagnostics.
+struct DeblurStatus {
+  std::size_t buffered_events = 0;
+  std::size_t buffer_bytes = 0;  ///< lists and per-pixel state
+  std::size_t waiting_frames = 0;
+  bool events_seen = false;
+  bool exposure_known = false;
+  SensorSize sensor_size;  ///< zero until the first event array or frame
+  std::int64_t last_exposure_ns = 0;
+  ContrastThresholds thresholds;    ///< in force: as given, or as learned
+  std::int64_t event_delay_ns = 0;  ///< as learned
+  /// At the last frame that was passed through for PassReason::kClocksDiffer; zero before.
+  ClockPair differing_clocks;
+};
+
+class Deblurrer {
+ public:
+  /// \param sink must outlive this object
+  /// \throws std::invalid_argument naming the parameter that is out of range
+  Deblurrer(const DeblurParameters& parameters, FrameSink& sink);
+  ~Deblurrer();
+  Deblurrer(const Deblurrer&) = delete;
+  Deblurrer& operator=(const Deblurrer&) = delete;
+
+  /// One event array. \p size is what the array says of the sensor, \p sequence its header.seq
+  /// (holes in it are counted and mark events as missing; a value that does not grow says nothing).
+  void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
+                 std::int64_t now_ns);
+  /// Events that were dropped on their way here, between the last array and the next, because too
+  /// many were waiting: counted as arrived and overflowed, and missing in the frames they belong
+  /// to.
+  void noteLostEvents(std::size_t events);
+  /// Arrays will be missing between the last one and the next: whoever feeds this stopped
+  /// listening. How many will be told by their numbers. Until the next array, frames that would
+  /// wait for events are passed through at once.
+  void noteMissingArrays();
+  void addFrame(InputFrame frame, std::int64_t now_ns);
+  void addExposure(std::int32_t exposure_us, std::int64_t now_ns);
+  /// Closes what the passing of time alone decides. Call it at least every few milliseconds.
+  void advance(std::int64_t now_ns);
+  /// Closes all waiting frames with what has come: the end of a bag.
+  void finish();
+  /// Forgets events and waiting frames (which get no output: frames_abandoned):
+  /// for the time nobody listened. The next events start up anew.
+  void pause();
+
+  /// Takes over new parameters between two frames. Frames closed from now on, those that wait
+  /// included, are those of a fresh object with the new parameters, bit for bit, as far as events
+  /// are still there: a window moved back to before the last frame's start has lost its own. Two
+  /// things that have come before matter nevertheless (filter.temporal begins anew):
+  /// - What was learned from the recording stays as long as what it was learned under does. It is
+  ///   forgotten, and learning starts anew from the values given, when the thresholds, the time
+  ///   offset, event_mapping, weighting, response, the place of exposures (stamp_reference,
+  ///   exposure_source, exposure_time), filter.enabled or what to learn changes.
+  /// - Output stamps go on increasing: a frame that another `reference` would place at or before
+  ///   the last output is suppressed.
+  /// Frames whose exposure message is awaited stop waiting when exposure_source changes.
+  ///
+  /// No event is lost, except that new limits (max_buffered_events, max_backward_jump,
+  /// max_forward_jump) and another event_mapping empty the lists: frames that need events from
+  /// before are passed through.
+  /// \throws std::invalid_argument and keeps the old ones when one is out of range
+  void setParameters(const DeblurParameters& parameters);
+  const DeblurParameters& parameters() const;
+
+  const DeblurCounters& counters() const;
+  /// That part of status() alone, which costs nothing to know.
+  std::size_t bufferedEvents() const;
+  DeblurStatus status() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fast_edi

@@ -1,0 +1,320 @@
+#include "fast_edi/calibration/online_calibration.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+#include "base/fast_log.hpp"
+
+namespace fast_edi {
+namespace {
+
+/// Grey levels outside are too dark or too near saturation to say anything [8-bit DN].
+constexpr int kLowestEvidence_dn = 16;
+constexpr int kHighestEvidence_dn = 239;
+constexpr std::size_t kLevels = 256;
+
+/// Changes below this many events drown in the quantisation of events.
+constexpr float kLeastChange = 3.0F;
+/// More events than this for each event of change: texture that came and went, or noise.
+constexpr float kMostEventsPerChange = 1.3F;
+constexpr float kSpareEvents = 2.0F;
+/// Residuals above this count less and less (scale of the Cauchy weights) [natural log]: wide while
+/// thresholds and delay may be far off, then about what noise and mismatch of a pixel make.
+constexpr double kFirstResidualScale = 0.5;
+constexpr double kResidualScale = 0.2;
+constexpr int kFirstFits = 3;
+/// Pixels count as the square of their intensity relative to this one [8-bit DN].
+constexpr double kTypicalGrey_dn = 100.0;
+/// Each event adds this much to the variance of a pixel's residual, relative to that of the frames.
+constexpr double kVariancePerEvent = 0.1;
+constexpr std::size_t kLeastPixels = 50;
+
+/// Weight of the nominal values, as if that many pixels had told them by one event each ...
+constexpr double kContrastRidge = 100.0;
+/// ... or, for the delay, by one natural-log unit per millisecond each.
+constexpr double kDelayRidge = 0.1;
+/// What is not to be learned is tied to its nominal value.
+constexpr double kTied = 1e12;
+/// Weight of what was learned before, each time a pair is added.
+constexpr double kForgetting = 0.9;
+constexpr double kLargestCorrection = 0.3;  ///< of a threshold, relative to nominal
+constexpr double kLargestDelay_ms = 5.0;    ///< of the events, in the mean
+/// Pairs of frames tell a threshold no better than to a few per cent. Of a correction, nothing is
+/// taken up to kDoubtfulCorrection, all from kSureCorrection on, relative to nominal.
+constexpr double kDoubtfulCorrection = 0.06;
+constexpr double kSureCorrection = 0.1;
+/// ln 2: behind a first-order low-pass of time constant tau, events are late by tau in the mean,
+/// which is what the fit finds, but an edge has half of its height after tau ln 2. With this shift
+/// the latent image has it in its place (and least squared error). Events ahead of the light come
+/// from clocks that differ, and such a shift is taken whole.
+constexpr double kEdgeDelayPerMeanDelay = 0.693147180559945;
+
+/// Smaller changes are not taken over, so that most pairs of frames were closed alike.
+constexpr double kNoticeableCorrection = 0.01;  ///< of a threshold, relative
+constexpr std::int64_t kNoticeableDelay_ns = 50 * kNanosecondsPerMicrosecond;
+
+/// Events between two exposures, relative to the rate within them: less than this is a hole.
+constexpr double kLeastRateBetween = 0.1;
+/// A shorter time between exposures says nothing about holes.
+constexpr std::int64_t kShortestPause_ns = kNanosecondsPerMillisecond;
+
+std::uint64_t eventsIn(const PixelEventLists& lists, const ExposureInterval& interval) {
+  return lists.lowerBound(interval.end_ns) - lists.lowerBound(interval.start_ns);
+}
+
+/// True when the time between two exposures holds (almost) no events although they do.
+bool isHole(const PixelEventLists& lists, const ExposureInterval& first,
+            const ExposureInterval& second) {
+  const ExposureInterval between{first.end_ns, second.start_ns};
+  if (between.length() < kShortestPause_ns) {
+    return false;
+  }
+  const auto inside = static_cast<double>(eventsIn(lists, first) + eventsIn(lists, second));
+  const double rate = inside / static_cast<double>(first.length() + second.length());
+  return static_cast<double>(eventsIn(lists, between)) <
+         kLeastRateBetween * rate * static_cast<double>(between.length());
+}
+
+double limited(double value, double lowest, double highest) {
+  return std::min(std::max(value, lowest), highest);
+}
+
+/// What is taken over of a threshold that was found.
+double correctedThreshold(double found, double nominal) {
+  const double correction = limited(found / nominal - 1.0, -kLargestCorrection, kLargestCorrection);
+  const double sure =
+      (std::abs(correction) - kDoubtfulCorrection) / (kSureCorrection - kDoubtfulCorrection);
+  return nominal * (1.0 + limited(sure, 0.0, 1.0) * correction);
+}
+
+}  // namespace
+
+OnlineCalibration::OnlineCalibration(SensorSize size, ContrastThresholds nominal, Settings settings)
+    : size_(size),
+      nominal_(nominal),
+      settings_(settings),
+      in_force_{nominal, 0},
+      log_latent_(size.pixelCount()),
+      previous_log_latent_(size.pixelCount()),
+      evidence_(size.pixelCount()) {}
+
+std::size_t OnlineCalibration::memoryBytes() const {
+  return (log_latent_.capacity() + previous_log_latent_.capacity()) * sizeof(float) +
+         evidence_.capacity() * sizeof(PixelEvidence);
+}
+
+std::int64_t OnlineCalibration::neededFrom() const {
+  return have_previous_ ? previous_window_.start_ns : std::numeric_limits<std::int64_t>::max();
+}
+
+CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraResponse& response,
+                                               const PixelEventLists& lists) {
+  loadLogLatent(frame, response);
+  resting_ = 0;
+  const Calibration before = in_force_;
+  CalibrationOutcome outcome = CalibrationOutcome::kNoPair;
+  if (have_previous_ && frame.window.start_ns >= previous_window_.end_ns) {
+    if (isHole(lists, previous_window_, frame.window)) {
+      outcome = CalibrationOutcome::kNoEventsBetween;
+    } else {
+      const Band band = gather(frame, lists);
+      NormalEquations pair;
+      outcome = CalibrationOutcome::kTooFewPixels;
+      if (fit(band, pair) >= kLeastPixels) {
+        learned_.matrix = kForgetting * learned_.matrix + pair.matrix;
+        learned_.vector = kForgetting * learned_.vector + pair.vector;
+        takeOver();
+        ++fits_;
+        outcome = CalibrationOutcome::kFitted;
+      }
+    }
+  }
+  previous_log_latent_.swap(log_latent_);
+  previous_window_ = frame.window;
+  previous_reference_ns_ = frame.reference_ns;
+  if (outcome == CalibrationOutcome::kFitted) {
+    useless_pairs_ = 0;
+    resting_ = std::max(resting_, fits_ >= kEagerFits ? kRestFrames : 0);
+  } else if (outcome != CalibrationOutcome::kNoPair && ++useless_pairs_ >= kPatience) {
+    resting_ = std::max(resting_, kRestFrames);
+  }
+  // No pair: the next frame is not needed, or will be closed otherwise than this one.
+  have_previous_ = resting_ == 0 && in_force_.thresholds == before.thresholds &&
+                   in_force_.event_delay_ns == before.event_delay_ns;
+  return outcome;
+}
+
+void OnlineCalibration::skipFrame() {
+  have_previous_ = false;
+  resting_ = std::max(0, resting_ - 1);
+}
+
+void OnlineCalibration::loadLogLatent(const Frame& frame, const CameraResponse& response) {
+  std::array<float, kLevels> log_exposure{};
+  log_exposure.fill(std::numeric_limits<float>::quiet_NaN());
+  for (int dn = kLowestEvidence_dn; dn <= kHighestEvidence_dn; ++dn) {
+    log_exposure[static_cast<std::size_t>(dn)] =
+        static_cast<float>(std::log(response.exposure(static_cast<double>(dn))));
+  }
+  log_typical_ = std::log(response.exposure(kTypicalGrey_dn));
+  const int bytes = bytesPerPixel(frame.image.format);
+  std::size_t i = 0;
+  for (int y = 0; y < size_.height; ++y) {
+    const std::uint8_t* pixel = frame.image.row(y);
+    for (int x = 0; x < size_.width; ++x, ++i, pixel += bytes) {
+      log_latent_[i] = log_exposure[level8(pixel, frame.image.format)] + fastLog(frame.gain[i]);
+    }
+  }
+}
+
+/// All pixels, or as many rows as hold about Settings::most_events of the pair's events; then what
+/// it costs to go through all of them is spread over as many frames.
+OnlineCalibration::Band OnlineCalibration::nextBand(std::uint64_t events) {
+  const auto width = static_cast<std::size_t>(size_.width);
+  if (events <= settings_.most_events) {
+    return {0, size_.pixelCount()};
+  }
+  resting_ = static_cast<int>(events / settings_.most_events);
+  const auto height = static_cast<std::uint64_t>(size_.height);
+  const int rows = std::max(1, static_cast<int>(height * settings_.most_events / events));
+  if (next_row_ + rows > size_.height) {
+    next_row_ = 0;
+  }
+  const Band band{static_cast<std::size_t>(next_row_) * width,
+                  static_cast<std::size_t>(rows) * width};
+  next_row_ += rows;
+  return band;
+}
+
+/// Sums up what the events of the pair say about the pixels of a band.
+OnlineCalibration::Band OnlineCalibration::gather(const Frame& frame,
+                                                  const PixelEventLists& lists) {
+  const ExposureInterval& first = previous_window_;
+  const ExposureInterval& second = frame.window;
+  constexpr auto kNsPerMs = static_cast<float>(kNanosecondsPerMillisecond);
+  const float per_first_ns = 1.0F / static_cast<float>(first.length());
+  const float per_second_ns = 1.0F / static_cast<float>(second.length());
+  const float step[2] = {static_cast<float>(in_force_.thresholds.step(false)),
+                         static_cast<float>(in_force_.thresholds.step(true))};
+  const LevelModel& level = settings_.level;
+  const bool has_ramps = !level.isStaircase();
+  const LevelInstant first_reference{previous_reference_ns_, first.end_ns};
+  const LevelInstant second_reference{frame.reference_ns, second.end_ns};
+  const auto mean_lead = static_cast<float>(0.5 * level.fraction);
+  const std::uint64_t begin = lists.lowerBound(first.start_ns);
+  const std::uint64_t end = lists.lowerBound(second.end_ns);
+  const Band band = nextBand(end - begin);
+  std::fill_n(evidence_.begin(), band.pixels, PixelEvidence{0.0F, 0.0F, 0.0F, 0.0F, 0.0F});
+  const auto first_pixel = static_cast<std::uint32_t>(band.first_pixel);
+  for (std::uint64_t sequence = begin; sequence < end;) {
+    const PackedEventSpan span = lists.span(sequence, end);
+    for (std::size_t i = 0; i < span.count; ++i) {
+      const std::uint32_t in_band = (span.data[i].code >> 1) - first_pixel;
+      if (in_band >= band.pixels) {
+        continue;
+      }
+      const std::int64_t t_ns = span.base_ns + static_cast<std::int64_t>(span.data[i].dt_ns);
+      const std::uint16_t ticks = has_ramps ? span.intervals[i] : std::uint16_t{0};
+      const std::uint32_t on = span.data[i].code & 1u;
+      PixelEvidence& pixel = evidence_[in_band];
+      float weight = 1.0F;
+      const std::int64_t mean_ns =
+          t_ns - static_cast<std::int64_t>(mean_lead * static_cast<float>(level.rampBefore(ticks)));
+      if (mean_ns < first.end_ns) {
+        weight = std::max(0.0F, static_cast<float>(mean_ns - first.start_ns) * per_first_ns);
+        pixel.slope -= step[on] * per_first_ns * kNsPerMs;
+      } else if (mean_ns >= second.start_ns) {
+        weight = static_cast<float>(second.end_ns - mean_ns) * per_second_ns;
+        pixel.slope += step[on] * per_second_ns * kNsPerMs;
+      }
+      (on != 0 ? pixel.on : pixel.off) += weight;
+      pixel.count += 1.0F;
+      if (t_ns >= previous_reference_ns_) {
+        pixel.level += step[on] * static_cast<float>(level.reached(t_ns, ticks, second_reference) -
+                                                     level.reached(t_ns, ticks, first_reference));
+      }
+    }
+    sequence += span.count;
+  }
+  return band;
+}
+
+/// Adds up the equations of a pair; returns how many pixels told something.
+std::size_t OnlineCalibration::fit(const Band& band, NormalEquations& equations) const {
+  const Eigen::Vector3d theta(in_force_.thresholds.on, in_force_.thresholds.off,
+                              static_cast<double>(in_force_.event_delay_ns) /
+                                  static_cast<double>(kNanosecondsPerMillisecond));
+  const double scale = fits_ < kFirstFits ? kFirstResidualScale : kResidualScale;
+  std::size_t pixels = 0;
+  for (std::size_t i = 0; i < band.pixels; ++i) {
+    const PixelEvidence& pixel = evidence_[i];
+    const float change = std::fabs(pixel.on - pixel.off);
+    if (change < kLeastChange || pixel.count > kMostEventsPerChange * change + kSpareEvents) {
+      continue;
+    }
+    const std::size_t at = band.first_pixel + i;
+    const auto residual =
+        static_cast<double>(log_latent_[at] - previous_log_latent_[at] - pixel.level);
+    if (std::isnan(residual)) {
+      continue;  // one of both grey levels is no evidence
+    }
+    const double scaled = residual / scale;
+    // An error of log intensity is seen in proportion to the intensity.
+    const double intensity = std::exp(
+        static_cast<double>(log_latent_[at] + previous_log_latent_[at]) - 2.0 * log_typical_);
+    const double weight =
+        intensity /
+        ((1.0 + scaled * scaled) * (1.0 + kVariancePerEvent * static_cast<double>(pixel.count)));
+    const Eigen::Vector3d x(static_cast<double>(pixel.on), -static_cast<double>(pixel.off),
+                            static_cast<double>(pixel.slope));
+    equations.matrix += weight * x * x.transpose();
+    equations.vector += weight * (residual + x.dot(theta)) * x;
+    ++pixels;
+  }
+  return pixels;
+}
+
+/// Solves what was learned so far for the calibration.
+void OnlineCalibration::takeOver() {
+  const double contrast_ridge = settings_.contrast ? kContrastRidge : kTied;
+  const double delay_ridge = settings_.delay ? kDelayRidge : kTied;
+  const Eigen::Vector3d ridge(contrast_ridge, contrast_ridge, delay_ridge);
+  const Eigen::Vector3d nominal(nominal_.on, nominal_.off, 0.0);
+  const Eigen::Matrix3d matrix = learned_.matrix + Eigen::Matrix3d(ridge.asDiagonal());
+  const Eigen::Vector3d theta =
+      matrix.ldlt().solve(learned_.vector + Eigen::Vector3d(ridge.cwiseProduct(nominal)));
+  if (!theta.allFinite()) {
+    return;
+  }
+
+  Calibration wanted{nominal_, 0};
+  if (settings_.contrast) {
+    wanted.thresholds = {correctedThreshold(theta[0], nominal_.on),
+                         correctedThreshold(theta[1], nominal_.off)};
+  }
+  if (settings_.delay) {
+    // That which goes with these thresholds, whether or not they are those of the fit.
+    const double delay_ms = (learned_.vector[2] - learned_.matrix(2, 0) * wanted.thresholds.on -
+                             learned_.matrix(2, 1) * wanted.thresholds.off) /
+                            (learned_.matrix(2, 2) + kDelayRidge);
+    wanted.event_delay_ns =
+        static_cast<std::int64_t>((delay_ms > 0.0 ? kEdgeDelayPerMeanDelay : 1.0) *
+                                  limited(delay_ms, -kLargestDelay_ms, kLargestDelay_ms) *
+                                  static_cast<double>(kNanosecondsPerMillisecond));
+  }
+  const auto differs = [](double a, double b) {
+    return std::abs(a - b) > kNoticeableCorrection * b;
+  };
+  if (differs(wanted.thresholds.on, in_force_.thresholds.on) ||
+      differs(wanted.thresholds.off, in_force_.thresholds.off) ||
+      std::abs(wanted.event_delay_ns - in_force_.event_delay_ns) > kNoticeableDelay_ns) {
+    in_force_ = wanted;
+  }
+}
+
+}  // namespace fast_edi

@@ -1,0 +1,58 @@
+#include "fast_edi/events/event_wire.hpp"
+
+#include <cstring>
+
+namespace fast_edi {
+namespace {
+
+constexpr std::size_t kXOffset = 0;
+constexpr std::size_t kYOffset = 2;
+constexpr std::size_t kSecondsOffset = 4;
+constexpr std::size_t kNanosecondsOffset = 8;
+constexpr std::size_t kPolarityOffset = 12;
+
+// ROS 1 puts numbers on the wire as the host has them, so a copy is the decoding; it also copes
+// with records of 13 bytes being aligned to nothing.
+template <typename Number>
+Number readNumber(const std::uint8_t* bytes) {
+  Number number;
+  std::memcpy(&number, bytes, sizeof(number));
+  return number;
+}
+
+template <typename Number>
+void writeNumber(Number number, std::uint8_t* bytes) {
+  std::memcpy(bytes, &number, sizeof(number));
+}
+
+}  // namespace
+
+Event decodeWireEvent(const std::uint8_t* record) {
+  Event event;
+  event.x = readNumber<std::uint16_t>(record + kXOffset);
+  event.y = readNumber<std::uint16_t>(record + kYOffset);
+  event.t_ns = static_cast<std::int64_t>(readNumber<std::uint32_t>(record + kSecondsOffset)) *
+                   kNanosecondsPerSecond +
+               readNumber<std::uint32_t>(record + kNanosecondsOffset);
+  event.on = record[kPolarityOffset] != 0;
+  return event;
+}
+
+void setWirePixel(std::uint16_t x, std::uint16_t y, bool on, std::uint8_t* record) {
+  writeNumber(x, record + kXOffset);
+  writeNumber(y, record + kYOffset);
+  record[kPolarityOffset] = on ? 1 : 0;
+}
+
+void encodeWireEvent(const Event& event, std::vector<std::uint8_t>& bytes) {
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + kWireEventBytes);
+  std::uint8_t* record = bytes.data() + begin;
+  setWirePixel(event.x, event.y, event.on, record);
+  writeNumber(static_cast<std::uint32_t>(event.t_ns / kNanosecondsPerSecond),
+              record + kSecondsOffset);
+  writeNumber(static_cast<std::uint32_t>(event.t_ns % kNanosecondsPerSecond),
+              record + kNanosecondsOffset);
+}
+
+}  // namespace fast_edi

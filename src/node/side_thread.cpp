@@ -1,0 +1,34 @@
+#include "node/side_thread.hpp"
+
+namespace fast_edi {
+namespace {
+
+/// How long stop() may have to wait for an idle thread.
+const ros::WallDuration kLongestWait(0.05);
+
+}  // namespace
+
+ros::NodeHandle SideThread::handle(const ros::NodeHandle& nh) {
+  ros::NodeHandle own(nh);
+  own.setCallbackQueue(&queue_);
+  return own;
+}
+
+void SideThread::start() {
+  thread_ = std::thread([this] {
+    while (!stopped_) {
+      queue_.callOne(kLongestWait);
+    }
+  });
+}
+
+void SideThread::stop() {
+  stopped_ = true;
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+  queue_.disable();
+  queue_.clear();
+}
+
+}  // namespace fast_edi

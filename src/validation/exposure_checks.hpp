@@ -1,0 +1,14 @@
+/// \file
+/// Findings about the exposure topic by itself.
+#pragma once
+
+#include <vector>
+
+#include "validation/finding.hpp"
+#include "validation/recording_survey.hpp"
+
+namespace fast_edi {
+
+std::vector<Finding> checkExposures(const RecordingSurvey& survey);
+
+}  // namespace fast_edi

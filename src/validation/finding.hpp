@@ -1,0 +1,38 @@
+/// \file
+/// What validate_bag says about a recording.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fast_edi/base/types.hpp"
+#include "fast_edi/events/event_mapping.hpp"
+
+namespace fast_edi {
+
+/// One thing that breaks or weakens deblurring.
+struct Finding {
+  std::string name;      ///< a fixed word for each kind, e.g. "exposure-missing"
+  std::string expected;  ///< what a sound recording has
+  std::string found;
+  std::string set;  ///< what to do: a parameter line, a driver setting
+};
+
+/// Values to be set, as far as the recording tells them.
+struct ParameterProposal {
+  ExposureInstant stamp_reference = ExposureInstant::kMid;
+  std::int64_t time_offset_us = 0;
+  std::int64_t exposure_time_us = 0;  ///< 0: the exposure topic has it, or it cannot be told
+  EventMapping event_mapping;
+  std::string offset_remark;  ///< what time_offset_us supposes, if anything
+};
+
+/// "start", "mid" or "end".
+std::string instantName(ExposureInstant instant);
+
+/// printf into a string.
+[[gnu::format(printf, 1, 2)]] std::string textOf(const char* format, ...);
+
+}  // namespace fast_edi

@@ -1,0 +1,14 @@
+/// \file
+/// Findings about messages, sizes, encodings, stamps and clocks.
+#pragma once
+
+#include <vector>
+
+#include "validation/finding.hpp"
+#include "validation/recording_survey.hpp"
+
+namespace fast_edi {
+
+std::vector<Finding> checkStreams(const RecordingSurvey& survey);
+
+}  // namespace fast_edi

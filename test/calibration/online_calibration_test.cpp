@@ -1,0 +1,284 @@
+#include "fast_edi/calibration/online_calibration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "fast_edi/integral/double_integral.hpp"
+
+namespace fast_edi {
+namespace {
+
+constexpr std::int64_t kMs = kNanosecondsPerMillisecond;
+constexpr SensorSize kSize{40, 30};
+constexpr std::int64_t kExposure_ns = 20 * kMs;
+constexpr std::int64_t kPeriod_ns = 40 * kMs;
+constexpr ContrastThresholds kTrue{0.25, 0.2};
+
+/// A sensor whose pixels see brightness ramps that start at different times: exact events of known
+/// thresholds, delayed as wanted, and frames that are exact means over their exposures.
+class RampScene {
+ public:
+  explicit RampScene(std::int64_t delay_ns) {
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x) {
+        const bool up = (x + y) % 2 == 0;
+        for (int ramp = 0; ramp < kRamps; ++ramp) {
+          // Up in one ramp and down in the next, so that grey levels stay in range.
+          const bool rises = up == (ramp % 2 == 0);
+          const std::int64_t start_ns = rampStart(x, y, ramp);
+          for (int k = 1; k <= steps(rises); ++k) {
+            events_.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                               start_ns + k * kStep_ns + delay_ns, rises});
+          }
+        }
+      }
+    }
+    std::sort(events_.begin(), events_.end(),
+              [](const Event& a, const Event& b) { return a.t_ns < b.t_ns; });
+    lists_ = std::make_unique<PixelEventLists>(kSize, PixelEventLists::Limits{});
+    for (const Event& event : events_) {
+      lists_->append(event);
+    }
+  }
+
+  const PixelEventLists& lists() const { return *lists_; }
+
+  static ExposureInterval exposure(int frame) {
+    const std::int64_t start_ns = kStart_ns + frame * kPeriod_ns;
+    return {start_ns, start_ns + kExposure_ns};
+  }
+
+  std::vector<std::uint8_t> frame(int index) const {
+    const ExposureInterval window = exposure(index);
+    std::vector<std::uint8_t> pixels;
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x) {
+        constexpr int kSamples = 200;
+        double sum = 0.0;
+        for (int i = 0; i < kSamples; ++i) {
+          sum += std::exp(logLevel(x, y, window.start_ns + (2 * i + 1) * kExposure_ns / 400));
+        }
+        pixels.push_back(static_cast<std::uint8_t>(std::lround(kGrey * sum / kSamples)));
+      }
+    }
+    return pixels;
+  }
+
+ private:
+  static constexpr double kGrey = 75.0;
+  static constexpr int kRamps = 10;
+  /// As many as make up one natural-log unit, so that levels come back.
+  static int steps(bool rises) { return rises ? 4 : 5; }
+  static constexpr std::int64_t kStep_ns = 2 * kMs;
+  static constexpr std::int64_t kStart_ns = 1000 * kMs;
+
+  static std::int64_t rampStart(int x, int y, int ramp) {
+    return kStart_ns + ramp * kPeriod_ns + (x * 37 + y * 101) % 29 * kMs + kMs / 3;
+  }
+
+  /// Log level as the events report it, without delay.
+  static double logLevel(int x, int y, std::int64_t t_ns) {
+    const bool up = (x + y) % 2 == 0;
+    double level = 0.0;
+    for (int ramp = 0; ramp < kRamps; ++ramp) {
+      const bool rises = up == (ramp % 2 == 0);
+      for (int k = 1; k <= steps(rises); ++k) {
+        level += t_ns >= rampStart(x, y, ramp) + k * kStep_ns ? kTrue.step(rises) : 0.0;
+      }
+    }
+    return level;
+  }
+
+  std::vector<Event> events_;
+  std::unique_ptr<PixelEventLists> lists_;
+};
+
+/// Closes frames as the pipeline does, with what the calibration says.
+Calibration calibrated(const RampScene& scene, ContrastThresholds nominal,
+                       OnlineCalibration::Settings settings, int frames = 10) {
+  OnlineCalibration calibration(kSize, nominal, settings);
+  std::vector<float> gain(kSize.pixelCount());
+  for (int i = 0; i < frames; ++i) {
+    const Calibration now = calibration.inForce();
+    ExposureInterval window = RampScene::exposure(i);
+    window.start_ns += now.event_delay_ns;
+    window.end_ns += now.event_delay_ns;
+    DoubleIntegral integral(kSize, now.thresholds, Weighting::kTime);
+    const std::int64_t reference_ns = window.at(ExposureInstant::kMid);
+    integral.close(scene.lists(), window, reference_ns, gain.data());
+    const std::vector<std::uint8_t> pixels = scene.frame(i);
+    const ImageView image{pixels.data(), kSize, static_cast<std::size_t>(kSize.width),
+                          PixelFormat::kMono8};
+    calibration.addFrame({window, reference_ns, image, gain.data()}, CameraResponse::linear(),
+                         scene.lists());
+  }
+  return calibration.inForce();
+}
+
+TEST(OnlineCalibration, FindsThresholdsThatAreTwentyPercentOff) {
+  const RampScene scene(0);
+  for (const double factor : {0.8, 1.2}) {
+    const Calibration found =
+        calibrated(scene, {factor * kTrue.on, factor * kTrue.off}, {true, false});
+    EXPECT_NEAR(found.thresholds.on / kTrue.on, 1.0, 0.04) << factor;
+    EXPECT_NEAR(found.thresholds.off / kTrue.off, 1.0, 0.04) << factor;
+    EXPECT_EQ(found.event_delay_ns, 0);
+  }
+}
+
+TEST(OnlineCalibration, LeavesRightThresholdsAlone) {
+  const Calibration found = calibrated(RampScene(0), kTrue, {true, true});
+  EXPECT_EQ(found.thresholds, kTrue);
+  EXPECT_LT(std::abs(found.event_delay_ns), kMs / 5);
+}
+
+TEST(OnlineCalibration, LeavesNearlyRightThresholdsAlone) {
+  const ContrastThresholds nominal{0.96 * kTrue.on, 1.04 * kTrue.off};
+  EXPECT_EQ(calibrated(RampScene(0), nominal, {true, true}).thresholds, nominal);
+}
+
+/// Of a delay, the part after which an edge behind a low-pass has half of its height.
+double edgeDelay(std::int64_t mean_ns) {
+  return static_cast<double>(mean_ns) * (mean_ns > 0 ? std::log(2.0) : 1.0);
+}
+
+TEST(OnlineCalibration, FindsTheDelayOfTheEvents) {
+  for (const std::int64_t delay_ns : {-2 * kMs, 1 * kMs, 3 * kMs}) {
+    const Calibration found = calibrated(RampScene(delay_ns), kTrue, {false, true});
+    EXPECT_NEAR(static_cast<double>(found.event_delay_ns), edgeDelay(delay_ns),
+                0.6 * kMs);  // events of a ramp are 2 ms apart
+    EXPECT_EQ(found.thresholds, kTrue);
+  }
+}
+
+TEST(OnlineCalibration, FindsBothAtOnce) {
+  const Calibration found =
+      calibrated(RampScene(2 * kMs), {0.8 * kTrue.on, 0.85 * kTrue.off}, {true, true});
+  EXPECT_NEAR(found.thresholds.on / kTrue.on, 1.0, 0.05);
+  EXPECT_NEAR(found.thresholds.off / kTrue.off, 1.0, 0.05);
+  EXPECT_NEAR(static_cast<double>(found.event_delay_ns), edgeDelay(2 * kMs), 0.5 * kMs);
+}
+
+TEST(OnlineCalibration, APartOfManyEventsIsEnough) {
+  // Some 12,000 events in a pair: bands of a few rows.
+  const Calibration found =
+      calibrated(RampScene(0), {0.8 * kTrue.on, 1.2 * kTrue.off}, {true, false, 2000});
+  EXPECT_NEAR(found.thresholds.on / kTrue.on, 1.0, 0.05);
+  EXPECT_NEAR(found.thresholds.off / kTrue.off, 1.0, 0.05);
+}
+
+TEST(OnlineCalibration, StaysWithinItsLimits) {
+  const Calibration found =
+      calibrated(RampScene(0), {2.5 * kTrue.on, 0.4 * kTrue.off}, {true, false});
+  EXPECT_GE(found.thresholds.on, 0.7 * 2.5 * kTrue.on - 1e-12);
+  EXPECT_LE(found.thresholds.off, 1.3 * 0.4 * kTrue.off + 1e-12);
+}
+
+/// Two frames and a list of events that the test chooses.
+class OnlineCalibrationPair : public ::testing::Test {
+ protected:
+  CalibrationOutcome addFrame(std::int64_t start_ns) {
+    const ExposureInterval window{start_ns, start_ns + kExposure_ns};
+    return calibration.addFrame(
+        {window,
+         window.at(ExposureInstant::kMid),
+         {pixels.data(), kSize, static_cast<std::size_t>(kSize.width), PixelFormat::kMono8},
+         gain.data()},
+        CameraResponse::linear(), lists);
+  }
+  void eventsIn(std::int64_t from_ns, std::int64_t to_ns) {
+    for (std::int64_t t_ns = from_ns; t_ns < to_ns; t_ns += kMs / 50) {
+      const auto i = static_cast<std::uint64_t>(t_ns / (kMs / 50));
+      lists.append({static_cast<std::uint16_t>(i * 7 % 40), static_cast<std::uint16_t>(i * 3 % 30),
+                    t_ns, i % 2 == 0});
+    }
+  }
+
+  OnlineCalibration calibration{kSize, kTrue, {true, true}};
+  PixelEventLists lists{kSize, {}};
+  std::vector<std::uint8_t> pixels = std::vector<std::uint8_t>(kSize.pixelCount(), 100);
+  std::vector<float> gain = std::vector<float>(kSize.pixelCount(), 1.0F);
+};
+
+TEST_F(OnlineCalibrationPair, RecognisesAStreamWithoutEventsBetweenExposures) {
+  eventsIn(0, kExposure_ns);
+  eventsIn(kPeriod_ns, kPeriod_ns + kExposure_ns);
+  EXPECT_EQ(addFrame(0), CalibrationOutcome::kNoPair);
+  EXPECT_EQ(addFrame(kPeriod_ns), CalibrationOutcome::kNoEventsBetween);
+  EXPECT_EQ(calibration.inForce().thresholds, kTrue);
+}
+
+TEST_F(OnlineCalibrationPair, NoiseAloneTeachesNothing) {
+  eventsIn(0, kPeriod_ns + kExposure_ns);
+  addFrame(0);
+  EXPECT_EQ(addFrame(kPeriod_ns), CalibrationOutcome::kTooFewPixels);
+  EXPECT_EQ(calibration.inForce().thresholds, kTrue);
+}
+
+TEST_F(OnlineCalibrationPair, RestsWhenNothingIsToBeLearned) {
+  eventsIn(0, (OnlineCalibration::kPatience + 1) * kPeriod_ns);
+  for (int i = 0; i <= OnlineCalibration::kPatience; ++i) {
+    EXPECT_TRUE(calibration.wantsNextFrame()) << i;
+    addFrame(i * kPeriod_ns);
+  }
+  for (int i = 0; i < OnlineCalibration::kRestFrames; ++i) {
+    EXPECT_FALSE(calibration.wantsNextFrame()) << i;
+    EXPECT_EQ(calibration.neededFrom(), INT64_MAX);
+    calibration.skipFrame();
+  }
+  EXPECT_TRUE(calibration.wantsNextFrame());
+}
+
+TEST_F(OnlineCalibrationPair, RestsAfterAPairOfManyEventsInProportion) {
+  eventsIn(0, kPeriod_ns + kExposure_ns);
+  const std::uint64_t events = lists.lowerBound(kPeriod_ns + kExposure_ns);
+  calibration = OnlineCalibration(kSize, kTrue, {true, true, events / 3});
+  addFrame(0);
+  addFrame(kPeriod_ns);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(calibration.wantsNextFrame()) << i;
+    calibration.skipFrame();
+  }
+  EXPECT_TRUE(calibration.wantsNextFrame());
+}
+
+TEST_F(OnlineCalibrationPair, AfterAnInterruptionTheNextFrameHasNoPartner) {
+  eventsIn(0, kPeriod_ns + kExposure_ns);
+  addFrame(0);
+  EXPECT_EQ(calibration.neededFrom(), 0);
+  calibration.interrupt();
+  EXPECT_EQ(calibration.neededFrom(), INT64_MAX);
+  EXPECT_EQ(addFrame(kPeriod_ns), CalibrationOutcome::kNoPair);
+}
+
+TEST_F(OnlineCalibrationPair, OverlappingExposuresAreNoPair) {
+  eventsIn(0, kPeriod_ns);
+  addFrame(0);
+  EXPECT_EQ(addFrame(kExposure_ns / 2), CalibrationOutcome::kNoPair);
+}
+
+TEST_F(OnlineCalibrationPair, BlackAndSaturatedPixelsAreNoEvidence) {
+  for (const std::uint8_t grey : {std::uint8_t{0}, std::uint8_t{255}}) {
+    pixels.assign(kSize.pixelCount(), grey);
+    // Five ON events for each pixel, far from what the frames show.
+    for (int k = 0; k < 5; ++k) {
+      for (int i = 0; i < static_cast<int>(kSize.pixelCount()); ++i) {
+        lists.append({static_cast<std::uint16_t>(i % kSize.width),
+                      static_cast<std::uint16_t>(i / kSize.width), kExposure_ns + k * kMs + i * 100,
+                      true});
+      }
+    }
+    calibration.interrupt();
+    addFrame(0);
+    EXPECT_EQ(addFrame(kPeriod_ns), CalibrationOutcome::kTooFewPixels);
+    lists.flush();
+  }
+}
+
+}  // namespace
+}  // namespace fast_edi

@@ -1,0 +1,98 @@
+#include "fast_edi/filters/frame_noise_estimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <vector>
+
+namespace fast_edi {
+namespace {
+
+constexpr SensorSize kSize{346, 260};
+
+struct Frame {
+  PixelFormat format;
+  std::size_t step;
+  std::vector<std::uint8_t> bytes;
+
+  explicit Frame(PixelFormat pixel_format)
+      : format(pixel_format),
+        step(static_cast<std::size_t>(kSize.width * bytesPerPixel(pixel_format))),
+        bytes(step * static_cast<std::size_t>(kSize.height)) {}
+  ImageView view() const { return {bytes.data(), kSize, step, format}; }
+};
+
+/// A smooth slope with noise; a Bayer mosaic has other levels at every second pixel.
+Frame noisyFrame(PixelFormat format, double sigma_dn, unsigned seed) {
+  Frame frame(format);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, sigma_dn);
+  const int samples = channels(format);
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      for (int channel = 0; channel < samples; ++channel) {
+        double level = 60.0 + 0.2 * x + 0.1 * y + 10.0 * channel + noise(random);
+        if (format == PixelFormat::kBayer8) {
+          level += 30.0 * (x % 2) + 15.0 * (y % 2);
+        }
+        std::uint8_t* row = frame.bytes.data() + static_cast<std::size_t>(y) * frame.step;
+        if (format == PixelFormat::kMono16) {
+          const auto dn = static_cast<std::uint16_t>(std::lround(level * kDn16PerDn8));
+          std::memcpy(row + 2 * x, &dn, sizeof(dn));
+        } else {
+          row[x * samples + channel] = static_cast<std::uint8_t>(std::lround(level));
+        }
+      }
+    }
+  }
+  return frame;
+}
+
+TEST(FrameNoiseEstimate, IsWithinATenthOfTheTruthInEveryFormat) {
+  for (const PixelFormat format :
+       {PixelFormat::kMono8, PixelFormat::kMono16, PixelFormat::kColor8, PixelFormat::kBayer8}) {
+    for (const double sigma : {1.0, 2.0, 4.0}) {
+      FrameNoiseEstimate estimate;
+      EXPECT_NEAR(static_cast<double>(estimate.of(noisyFrame(format, sigma, 3).view())), sigma,
+                  0.1 * sigma)
+          << static_cast<int>(format);
+    }
+  }
+}
+
+TEST(FrameNoiseEstimate, TextureOnHalfOfTheFrameHardlyMatters) {
+  Frame frame = noisyFrame(PixelFormat::kMono8, 1.5, 4);
+  for (int y = 0; y < kSize.height / 2; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      frame.bytes[static_cast<std::size_t>(y) * frame.step + static_cast<std::size_t>(x)] =
+          static_cast<std::uint8_t>(80 + 40 * ((x / 3 + y / 3) % 2));
+    }
+  }
+  FrameNoiseEstimate estimate;
+  EXPECT_NEAR(estimate.of(frame.view()), 1.5F, 0.25F);
+}
+
+TEST(FrameNoiseEstimate, StaysWithinItsBounds) {
+  FrameNoiseEstimate estimate;
+  EXPECT_EQ(estimate.of(noisyFrame(PixelFormat::kMono8, 0.0, 5).view()),
+            FrameNoiseEstimate::kLowest_dn);
+  EXPECT_EQ(estimate.of(noisyFrame(PixelFormat::kMono8, 15.0, 5).view()),
+            FrameNoiseEstimate::kHighest_dn);
+}
+
+TEST(FrameNoiseEstimate, BlackSaturatedAndTinyFramesTellNothing) {
+  FrameNoiseEstimate estimate;
+  for (const std::uint8_t level : {0, 255}) {
+    Frame frame(PixelFormat::kMono8);
+    std::fill(frame.bytes.begin(), frame.bytes.end(), level);
+    EXPECT_EQ(estimate.of(frame.view()), FrameNoiseEstimate::kLowest_dn);
+  }
+  const std::uint8_t pixel = 100;
+  EXPECT_EQ(estimate.of({&pixel, {1, 1}, 1, PixelFormat::kMono8}), FrameNoiseEstimate::kLowest_dn);
+}
+
+}  // namespace
+}  // namespace fast_edi

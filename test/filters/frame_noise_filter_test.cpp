@@ -1,0 +1,150 @@
+#include "fast_edi/filters/frame_noise_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <vector>
+
+namespace fast_edi {
+namespace {
+
+constexpr SensorSize kSize{46, 34};
+
+struct Image {
+  PixelFormat format;
+  std::size_t step;
+  std::vector<std::uint8_t> bytes;
+
+  explicit Image(PixelFormat pixel_format, std::size_t padding = 0)
+      : format(pixel_format),
+        step(static_cast<std::size_t>(kSize.width * bytesPerPixel(pixel_format)) + padding),
+        bytes(step * static_cast<std::size_t>(kSize.height), 0xAA) {}
+  ImageView view() const { return {bytes.data(), kSize, step, format}; }
+  MutableImageView mutableView() { return {bytes.data(), kSize, step, format}; }
+};
+
+constexpr float kNoise_dn = 1.5F;
+
+std::vector<float> noEvents() {
+  return std::vector<float>(kSize.pixelCount());
+}
+
+double noiseOf(const Image& image, double mean) {
+  double squares = 0.0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      squares += std::pow(
+          image.bytes[static_cast<std::size_t>(y) * image.step + static_cast<std::size_t>(x)] -
+              mean,
+          2);
+    }
+  }
+  return std::sqrt(squares / static_cast<double>(kSize.pixelCount()));
+}
+
+TEST(FrameNoiseFilter, LowersReadNoise) {
+  Image image(PixelFormat::kMono8);
+  std::mt19937 random(11);
+  std::normal_distribution<double> read(100.0, 1.5);
+  for (std::uint8_t& byte : image.bytes) {
+    byte = static_cast<std::uint8_t>(std::lround(read(random)));
+  }
+  const double before = noiseOf(image, 100.0);
+  FrameNoiseFilter filter(kSize, PixelFormat::kMono8);
+  filter.apply(image.view(), kNoise_dn, noEvents().data(), image.mutableView());
+  EXPECT_LT(noiseOf(image, 100.0), 0.5 * before);
+}
+
+TEST(FrameNoiseFilter, LeavesEdgesAndSaturatedAreasAsTheyAre) {
+  for (const PixelFormat format :
+       {PixelFormat::kMono8, PixelFormat::kMono16, PixelFormat::kColor8}) {
+    Image image(format);
+    for (int y = 0; y < kSize.height; ++y) {
+      const std::size_t half = image.step / 2 / 6 * 6;
+      std::memset(image.bytes.data() + static_cast<std::size_t>(y) * image.step, 0, half);
+      std::memset(image.bytes.data() + static_cast<std::size_t>(y) * image.step + half, 0xFF,
+                  image.step - half);
+    }
+    Image out(format);
+    FrameNoiseFilter filter(kSize, format);
+    filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
+    EXPECT_EQ(out.bytes, image.bytes) << static_cast<int>(format);
+  }
+}
+
+TEST(FrameNoiseFilter, TakesOutWhatGainsMadeOfNoiseOnlyWhereThereAreEvents) {
+  Image image(PixelFormat::kMono8);
+  std::mt19937 random(12);
+  std::normal_distribution<double> noise(150.0, 4.0);
+  for (std::uint8_t& byte : image.bytes) {
+    byte = static_cast<std::uint8_t>(std::lround(noise(random)));
+  }
+  const double before = noiseOf(image, 150.0);
+  const auto after = [&image](float mean_count) {
+    const std::vector<float> counts(kSize.pixelCount(), mean_count);
+    Image out(PixelFormat::kMono8);
+    FrameNoiseFilter filter(kSize, PixelFormat::kMono8);
+    filter.apply(image.view(), 0.3F, counts.data(), out.mutableView());
+    return noiseOf(out, 150.0);
+  };
+  EXPECT_GT(after(0.0F), 0.95 * before);
+  EXPECT_LT(after(3.0F), 0.7 * before);
+}
+
+TEST(FrameNoiseFilter, SaturatedPixelsStay) {
+  for (const PixelFormat format : {PixelFormat::kMono8, PixelFormat::kMono16}) {
+    Image image(format);
+    std::fill(image.bytes.begin(), image.bytes.end(), std::uint8_t{0xFD});
+    const auto lamp = static_cast<std::size_t>(10 * bytesPerPixel(format));
+    for (std::size_t i = 0; i < static_cast<std::size_t>(bytesPerPixel(format)); ++i) {
+      image.bytes[lamp + i] = 0xFF;
+    }
+    Image out(format);
+    FrameNoiseFilter filter(kSize, format);
+    filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
+    EXPECT_EQ(out.bytes[lamp], 0xFF);
+  }
+}
+
+TEST(FrameNoiseFilter, ColoursDoNotMix) {
+  Image image(PixelFormat::kColor8);
+  for (std::size_t i = 0; i < image.bytes.size(); ++i) {
+    image.bytes[i] = static_cast<std::uint8_t>(100 + i % 3);
+  }
+  Image out(PixelFormat::kColor8);
+  FrameNoiseFilter filter(kSize, PixelFormat::kColor8);
+  filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
+  EXPECT_EQ(out.bytes, image.bytes);
+}
+
+TEST(FrameNoiseFilter, TheMosaicOfABayerFrameStays) {
+  Image image(PixelFormat::kBayer8);
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      image.bytes[static_cast<std::size_t>(y) * image.step + static_cast<std::size_t>(x)] =
+          static_cast<std::uint8_t>(100 + 2 * (y % 2) + x % 2);
+    }
+  }
+  Image out(PixelFormat::kBayer8);
+  FrameNoiseFilter filter(kSize, PixelFormat::kBayer8);
+  filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
+  EXPECT_EQ(out.bytes, image.bytes);
+}
+
+TEST(FrameNoiseFilter, ReadsPaddedRowsAndWritesNothingIntoPadding) {
+  Image image(PixelFormat::kMono8, 5);
+  Image out(PixelFormat::kMono8, 9);
+  FrameNoiseFilter filter(kSize, PixelFormat::kMono8);
+  filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
+  for (int y = 0; y < kSize.height; ++y) {
+    for (std::size_t x = static_cast<std::size_t>(kSize.width); x < out.step; ++x) {
+      EXPECT_EQ(out.bytes[static_cast<std::size_t>(y) * out.step + x], 0xAA);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fast_edi

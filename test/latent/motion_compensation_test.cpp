@@ -1,0 +1,211 @@
+#include "fast_edi/latent/motion_compensation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fast_edi/base/image_plane.hpp"
+
+namespace fast_edi {
+namespace {
+
+constexpr SensorSize kSize{96, 72};
+constexpr int kBorder_px = 8;
+/// Between the reference and the other image [px].
+constexpr double kShift_px = 1.3;
+
+double waves(double x, double y) {
+  return 120.0 + 40.0 * std::sin(0.31 * x + 0.17 * y) + 30.0 * std::sin(0.12 * x - 0.27 * y);
+}
+
+struct Image {
+  PixelFormat format;
+  std::vector<std::uint8_t> bytes;
+
+  explicit Image(PixelFormat pixel_format)
+      : format(pixel_format),
+        bytes(kSize.pixelCount() * static_cast<std::size_t>(bytesPerPixel(pixel_format))) {}
+  std::size_t step() const { return static_cast<std::size_t>(kSize.width * bytesPerPixel(format)); }
+  ImageView view() const { return {bytes.data(), kSize, step(), format}; }
+  MutableImageView mutableView() { return {bytes.data(), kSize, step(), format}; }
+  std::vector<float> plane(int channel = 0) const {
+    std::vector<float> levels(kSize.pixelCount());
+    loadPlane(view(), channel, levels.data());
+    return levels;
+  }
+};
+
+std::size_t indexOf(int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(kSize.width) +
+         static_cast<std::size_t>(x);
+}
+
+/// The waves, shifted and with noise.
+std::vector<float> wavePlane(double shift_px, double noise_dn, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  std::vector<float> plane;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      plane.push_back(static_cast<float>(waves(x + shift_px, y) + noise_dn * noise(random)));
+    }
+  }
+  return plane;
+}
+
+Image imageOf(const std::vector<float>& plane, PixelFormat format = PixelFormat::kMono8,
+              float scale = 1.0F) {
+  Image image(format);
+  std::vector<float> levels(plane);
+  for (float& level : levels) {
+    level *= scale;
+  }
+  for (int channel = 0; channel < channels(format); ++channel) {
+    storePlane(levels.data(), channel, image.mutableView());
+  }
+  return image;
+}
+
+/// Root mean square away from the border.
+double error(const std::vector<float>& plane, const std::vector<float>& truth) {
+  double squares = 0.0;
+  int count = 0;
+  for (int y = kBorder_px; y < kSize.height - kBorder_px; ++y) {
+    for (int x = kBorder_px; x < kSize.width - kBorder_px; ++x) {
+      squares += std::pow(static_cast<double>(plane[indexOf(x, y)] - truth[indexOf(x, y)]), 2);
+      ++count;
+    }
+  }
+  return std::sqrt(squares / count);
+}
+
+Image compensated(const Image& reference, Image image) {
+  MotionCompensation compensation;
+  compensation.setReference(reference.view());
+  compensation.apply(image.mutableView());
+  return image;
+}
+
+TEST(MotionCompensation, TakesOutNoiseThatTheReferenceDoesNotHave) {
+  const std::vector<float> truth = wavePlane(kShift_px, 0.0, 0);
+  const Image noisy = imageOf(wavePlane(kShift_px, 6.0, 1));
+  const Image steadied = compensated(imageOf(wavePlane(0.0, 0.0, 0)), noisy);
+  EXPECT_GT(error(noisy.plane(), truth), 5.5);
+  EXPECT_LT(error(steadied.plane(), truth), 1.5);
+}
+
+TEST(MotionCompensation, LeavesAnImageThatEqualsTheReference) {
+  const Image image = imageOf(wavePlane(0.0, 6.0, 2));
+  EXPECT_EQ(compensated(image, image).bytes, image.bytes);
+}
+
+TEST(MotionCompensation, LeavesWhatDiffersByMoreThanNoise) {
+  // A patch has become brighter, as when a lamp goes on: no motion explains it.
+  std::vector<float> plane = wavePlane(0.0, 0.0, 0);
+  for (int y = 30; y < 46; ++y) {
+    for (int x = 40; x < 56; ++x) {
+      plane[indexOf(x, y)] = 255.0F;
+    }
+  }
+  const Image image = imageOf(plane);
+  const Image steadied = compensated(imageOf(wavePlane(0.0, 0.0, 0)), image);
+  for (int y = 34; y < 42; ++y) {
+    for (int x = 44; x < 52; ++x) {
+      ASSERT_NEAR(steadied.plane()[indexOf(x, y)], 255.0F, 1.0F);
+    }
+  }
+}
+
+TEST(MotionCompensation, LeavesWhatComesFromOutside) {
+  const double shift_px = 6.0;
+  const Image noisy = imageOf(wavePlane(shift_px, 4.0, 3));
+  const std::vector<float> before = noisy.plane();
+  const std::vector<float> after = compensated(imageOf(wavePlane(0.0, 0.0, 0)), noisy).plane();
+  for (int y = 0; y < kSize.height; ++y) {
+    EXPECT_EQ(after[indexOf(kSize.width - 1, y)], before[indexOf(kSize.width - 1, y)]);
+    EXPECT_EQ(after[indexOf(kSize.width - 3, y)], before[indexOf(kSize.width - 3, y)]);
+  }
+}
+
+TEST(MotionCompensation, DoesTheSameInEachFormat) {
+  const std::vector<float> truth = wavePlane(kShift_px, 0.0, 0);
+  const std::vector<float> reference = wavePlane(0.0, 0.0, 0);
+  const std::vector<float> noisy = wavePlane(kShift_px, 6.0, 4);
+  const Image grey = compensated(imageOf(reference), imageOf(noisy));
+
+  const auto dn16 = static_cast<float>(kDn16PerDn8);
+  std::vector<float> wide = compensated(imageOf(reference, PixelFormat::kMono16, dn16),
+                                        imageOf(noisy, PixelFormat::kMono16, dn16))
+                                .plane();
+  for (float& level : wide) {
+    level /= dn16;
+  }
+  EXPECT_LT(error(wide, grey.plane()), 0.6);
+  const Image colour =
+      compensated(imageOf(reference, PixelFormat::kColor8), imageOf(noisy, PixelFormat::kColor8));
+  for (int channel = 0; channel < 3; ++channel) {
+    EXPECT_LT(error(colour.plane(channel), truth), 1.5);
+  }
+  // Photosites of one colour are two pixels apart: less is known between them.
+  EXPECT_LT(error(compensated(imageOf(reference, PixelFormat::kBayer8),
+                              imageOf(noisy, PixelFormat::kBayer8))
+                      .plane(),
+                  truth),
+            2.0);
+}
+
+TEST(MotionCompensation, DoesNotMixTheColoursOfAMosaic) {
+  // Red scene: photosites of the other colours stay dark, whatever the motion.
+  const auto mosaic = [](double shift_px) {
+    std::vector<float> plane = wavePlane(shift_px, 0.0, 0);
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x) {
+        if (x % 2 != 0 || y % 2 != 0) plane[indexOf(x, y)] = 5.0F;
+      }
+    }
+    return imageOf(plane, PixelFormat::kBayer8);
+  };
+  const std::vector<float> after = compensated(mosaic(0.0), mosaic(kShift_px)).plane();
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      if (x % 2 != 0 || y % 2 != 0) {
+        ASSERT_EQ(after[indexOf(x, y)], 5.0F) << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST(MotionCompensation, StaysWithinTheRangeOfLevels) {
+  std::vector<float> checks(kSize.pixelCount());
+  for (std::size_t i = 0; i < checks.size(); ++i) {
+    checks[i] = (i / 3) % 2 == 0 ? 0.0F : 255.0F;
+  }
+  std::vector<float> moved(checks);
+  std::rotate(moved.begin(), moved.begin() + 1, moved.end());
+  const Image image = compensated(imageOf(checks), imageOf(moved));
+  // Overshoot that wrapped around would turn white into black.
+  EXPECT_LT(error(image.plane(), moved), 40.0);
+}
+
+TEST(MotionCompensation, TakesSmallImages) {
+  for (const SensorSize size : {SensorSize{1, 1}, {2, 1}, {3, 5}}) {
+    std::vector<std::uint8_t> reference(size.pixelCount(), 100);
+    std::vector<std::uint8_t> image(size.pixelCount(), 104);
+    MotionCompensation compensation;
+    const auto step = static_cast<std::size_t>(size.width);
+    compensation.setReference({reference.data(), size, step, PixelFormat::kBayer8});
+    compensation.apply({image.data(), size, step, PixelFormat::kBayer8});
+    for (const std::uint8_t level : image) {
+      EXPECT_GE(level, 100);
+      EXPECT_LE(level, 104);
+    }
+    EXPECT_GT(compensation.memoryBytes(), 0U);
+  }
+}
+
+}  // namespace
+}  // namespace fast_edi

@@ -1,0 +1,119 @@
+#include "node/side_thread.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <thread>
+#include <utility>
+
+#include <gtest/gtest.h>
+#include <ros/callback_queue_interface.h>
+#include <boost/make_shared.hpp>
+
+namespace fast_edi {
+namespace {
+
+/// Counts its calls and tells the thread of the last.
+struct Calls {
+  std::atomic<int> count{0};
+  std::atomic<std::thread::id> thread{};
+};
+
+class Call : public ros::CallbackInterface {
+ public:
+  explicit Call(Calls& calls) : calls_(calls) {}
+  CallResult call() override {
+    calls_.thread = std::this_thread::get_id();
+    ++calls_.count;
+    return Success;
+  }
+
+ private:
+  Calls& calls_;
+};
+
+/// Lets the test decide when it ends.
+class LongCall : public ros::CallbackInterface {
+ public:
+  LongCall(std::promise<void>& begun, std::shared_future<void> end, std::atomic<bool>& ended)
+      : begun_(begun), end_(std::move(end)), ended_(ended) {}
+  CallResult call() override {
+    begun_.set_value();
+    end_.wait();
+    ended_ = true;
+    return Success;
+  }
+
+ private:
+  std::promise<void>& begun_;
+  std::shared_future<void> end_;
+  std::atomic<bool>& ended_;
+};
+
+/// \return whether there were as many calls before patience ended
+bool waitFor(const Calls& calls, int count) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (calls.count < count && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+  }
+  return calls.count == count;
+}
+
+class SideThreadTest : public ::testing::Test {
+ protected:
+  SideThreadTest() : queue_(thread_.queue()) {}
+
+  SideThread thread_;
+  ros::CallbackQueueInterface& queue_;
+  Calls calls_;
+};
+
+TEST_F(SideThreadTest, CallsInAThreadOfItsOwnOnceStarted) {
+  queue_.addCallback(boost::make_shared<Call>(calls_), 1);
+  EXPECT_EQ(calls_.count, 0);
+  thread_.start();
+  ASSERT_TRUE(waitFor(calls_, 1));
+  EXPECT_NE(calls_.thread.load(), std::this_thread::get_id());
+  queue_.addCallback(boost::make_shared<Call>(calls_), 1);
+  EXPECT_TRUE(waitFor(calls_, 2));
+}
+
+TEST_F(SideThreadTest, StoppingWaitsForTheCallbackAtWork) {
+  std::promise<void> begun;
+  std::promise<void> end;
+  std::atomic<bool> ended{false};
+  queue_.addCallback(boost::make_shared<LongCall>(begun, end.get_future().share(), ended), 1);
+  thread_.start();
+  begun.get_future().wait();
+  std::thread stopper([&] {
+    thread_.stop();
+    EXPECT_TRUE(ended);
+  });
+  end.set_value();
+  stopper.join();
+}
+
+TEST_F(SideThreadTest, NothingIsCalledAfterStopping) {
+  thread_.start();
+  thread_.stop();
+  queue_.addCallback(boost::make_shared<Call>(calls_), 1);
+  thread_.stop();
+  EXPECT_EQ(calls_.count, 0);
+}
+
+TEST_F(SideThreadTest, WhatIsQueuedWhenItStopsIsNeverCalled) {
+  std::promise<void> begun;
+  std::promise<void> end;
+  std::atomic<bool> ended{false};
+  queue_.addCallback(boost::make_shared<LongCall>(begun, end.get_future().share(), ended), 1);
+  queue_.addCallback(boost::make_shared<Call>(calls_), 2);
+  EXPECT_EQ(calls_.count, 0);
+  thread_.stop();
+  thread_.start();
+  thread_.stop();
+  EXPECT_FALSE(ended);
+  EXPECT_EQ(calls_.count, 0);
+}
+
+}  // namespace
+}  // namespace fast_edi
