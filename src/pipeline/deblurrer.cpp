@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "fast_edi/base/parameter_ranges.hpp"
 #include "fast_edi/base/stored_image.hpp"
 #include "fast_edi/calibration/online_calibration.hpp"
 #include "fast_edi/events/event_counts.hpp"

@@ -7,6 +7,7 @@
 
 #include <fuzzer/FuzzedDataProvider.h>
 
+#include "fast_edi/base/parameter_ranges.hpp"
 #include "fast_edi/pipeline/deblurrer.hpp"
 #include "fuzz/fuzzing.hpp"
 #include "support/event_generators.hpp"

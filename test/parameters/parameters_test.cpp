@@ -1,4 +1,5 @@
 #include "fast_edi/parameters/parameters.hpp"
+#include "fast_edi/base/parameter_ranges.hpp"
 
 #include <functional>
 #include <limits>

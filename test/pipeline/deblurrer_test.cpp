@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "fast_edi/base/parameter_ranges.hpp"
 #include "fast_edi/events/event_coverage.hpp"
 #include "fast_edi/events/pixel_event_lists.hpp"
 #include "support/allocation_counter.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "fast_edi/base/parameter_ranges.hpp"
 #include "fast_edi/events/event_wire.hpp"
 #include "fast_edi/events/pixel_event_lists.hpp"
 #include "fast_edi/exposure/stamp_limits.hpp"

@@ -1,4 +1,5 @@
 #include "fast_edi/video/latent_instants.hpp"
+#include "fast_edi/base/parameter_ranges.hpp"
 
 #include <stdexcept>
 

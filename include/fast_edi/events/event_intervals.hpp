@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "fast_edi/events/packed_event.hpp"
+
 namespace fast_edi {
 
 class EventIntervals {
