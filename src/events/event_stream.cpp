@@ -28,12 +28,14 @@ EventStream::EventStream(PixelEventLists::Limits limits, DeblurCounters& counter
                          BreakHandler before_break)
     : limits_(limits), counters_(counters), before_break_(std::move(before_break)) {}
 
-void EventStream::take(const WireEvents& events, SensorSize size, std::uint32_t sequence) {
+void EventStream::take(const WireEvents& events, SensorSize size,
+                       std::optional<std::uint32_t> sequence) {
   ++counters_.event_arrays;
   counters_.events_in += events.count;
   stopped_ = false;
   const bool refused = !isValid(size);
-  const SequenceStep step = sequence_gaps_.step(sequence);
+  const SequenceStep step =
+      sequence ? sequence_gaps_.step(*sequence) : SequenceStep::kNothingMissing;
   counters_.event_array_gaps += step == SequenceStep::kGap ? 1 : 0;
   counters_.event_arrays_missing += step == SequenceStep::kGap ? sequence_gaps_.missing() : 0;
   counters_.event_restarts += step == SequenceStep::kRestart ? 1 : 0;

@@ -88,6 +88,7 @@ class Deblurrer::Impl {
 
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                  std::int64_t now_ns);
+  void addEvents(const Event* events, std::size_t count, SensorSize size, std::int64_t now_ns);
   void noteLostEvents(std::size_t events) { events_.noteLost(events); }
   void noteMissingArrays() { events_.noteMissing(); }
   void addFrame(InputFrame frame, std::int64_t now_ns);
@@ -105,6 +106,7 @@ class Deblurrer::Impl {
  private:
   // Events in
   void takeEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence);
+  void takeEvents(const Event* events, std::size_t count, SensorSize size);
 
   // Frames in
   void beginFrameEpoch(bool after_time_jump);
@@ -200,6 +202,33 @@ void Deblurrer::Impl::takeEvents(const WireEvents& events, SensorSize size,
   mapped_events_.assign(events.data, events.data + events.count * kWireEventBytes);
   mapping.apply(mapped_events_.data(), events.count, size);
   events_.take({mapped_events_.data(), events.count}, mapping.apply(size), sequence);
+}
+
+void Deblurrer::Impl::addEvents(const Event* events, std::size_t count, SensorSize size,
+                                std::int64_t now_ns) {
+  advance(now_ns);
+  if (count > 0) {
+    last_events_ns_ = now_ns_;
+  }
+  takeEvents(events, count, size);
+  closeReady();
+  follow();
+}
+
+/// Plain events, by way of wire records.
+void Deblurrer::Impl::takeEvents(const Event* events, std::size_t count, SensorSize size) {
+  const EventMapping& mapping = parameters_.event_mapping;
+  mapped_events_.clear();
+  mapped_events_.reserve(count * kWireEventBytes);
+  std::for_each(events, events + count, [&](const Event& event) {
+    if (isStamp(event.t_ns)) {
+      encodeWireEvent(mapping.apply(event, size), mapped_events_);
+    }
+  });
+  const std::size_t valid = mapped_events_.size() / kWireEventBytes;
+  counters_.events_in += count - valid;
+  counters_.events_glitched += count - valid;
+  events_.take({mapped_events_.data(), valid}, mapping.apply(size), std::nullopt);
 }
 
 void Deblurrer::Impl::addFrame(InputFrame frame, std::int64_t now_ns) {
@@ -729,6 +758,11 @@ Deblurrer::~Deblurrer() = default;
 void Deblurrer::addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                           std::int64_t now_ns) {
   impl_->addEvents(events, size, sequence, now_ns);
+}
+
+void Deblurrer::addEvents(const Event* events, std::size_t count, SensorSize size,
+                          std::int64_t now_ns) {
+  impl_->addEvents(events, count, size, now_ns);
 }
 
 void Deblurrer::noteLostEvents(std::size_t events) {

@@ -42,19 +42,18 @@ int main() {
   // to 40 exp(4 * 0.25) = 109 at x ms, which causes four events; the frame has the mean of both.
   const fast_edi::SensorSize size{kExposure_ms, 1};
   std::vector<std::uint8_t> frame;
-  std::vector<std::uint8_t> events;  // packed as in dvs_msgs/EventArray
-  fast_edi::encodeWireEvent({0, 0, kStart - kMs, true}, events);
+  std::vector<fast_edi::Event> events{{0, 0, kStart - kMs, true}};
   for (std::uint16_t x = 0; x < kExposure_ms; ++x) {
     frame.push_back(static_cast<std::uint8_t>((40 * x + 109 * (kExposure_ms - x)) / kExposure_ms));
     for (int step = 0; step < 4; ++step) {
-      fast_edi::encodeWireEvent({x, 0, kStart + x * kMs + step, true}, events);
+      events.push_back({x, 0, kStart + x * kMs + step, true});
     }
   }
-  fast_edi::encodeWireEvent({0, 0, kStart + (kExposure_ms + 1) * kMs, true}, events);
+  events.push_back({0, 0, kStart + (kExposure_ms + 1) * kMs, true});
 
   Printer printer;
   fast_edi::Deblurrer deblurrer(parameters, printer);
-  deblurrer.addEvents({events.data(), events.size() / fast_edi::kWireEventBytes}, size, 0, 0);
+  deblurrer.addEvents(events.data(), events.size(), size, 0);
   const std::int64_t stamp = kStart + kExposure_ms * kMs / 2;
   deblurrer.addFrame({stamp, {frame.data(), size, frame.size()}, true, nullptr}, 0);
 }

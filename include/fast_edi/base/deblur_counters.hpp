@@ -37,7 +37,7 @@ struct DeblurCounters {
   std::uint64_t events_in = 0;          ///< records that arrived
   std::uint64_t events_late = 0;        ///< older than the newest: dropped
   std::uint64_t events_outside = 0;     ///< not on the sensor: dropped
-  std::uint64_t events_glitched = 0;    ///< unconfirmed time jump: dropped
+  std::uint64_t events_glitched = 0;    ///< unconfirmed time jump, or no stamp (isStamp()): dropped
   std::uint64_t events_refused = 0;     ///< in an array without a valid sensor size: dropped
   std::uint64_t events_overflowed = 0;  ///< max_buffered_events reached: oldest dropped
   std::uint64_t event_arrays = 0;

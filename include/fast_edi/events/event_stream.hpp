@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "fast_edi/base/deblur_counters.hpp"
@@ -48,8 +49,8 @@ class EventStream {
   /// \param counters all events_... and event_... are counted there; must outlive this object
   EventStream(PixelEventLists::Limits limits, DeblurCounters& counters, BreakHandler before_break);
 
-  /// One event array; see Deblurrer::addEvents().
-  void take(const WireEvents& events, SensorSize size, std::uint32_t sequence);
+  /// One event array; see Deblurrer::addEvents(). \param sequence nothing: arrays have no numbers
+  void take(const WireEvents& events, SensorSize size, std::optional<std::uint32_t> sequence);
   /// See Deblurrer::noteLostEvents().
   void noteLost(std::size_t events);
   /// See Deblurrer::noteMissingArrays().

@@ -58,6 +58,13 @@ class Deblurrer {
   /// (holes in it are counted and mark events as missing; a value that does not grow says nothing).
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                  std::int64_t now_ns);
+  /// The same for plain events: same images, same counters. Events whose time lies outside
+  /// [0, 2^32 s) are dropped (events_glitched). Without sequence numbers, lost arrays are not
+  /// noticed: report them with noteMissingArrays() or noteLostEvents().
+  /// \param events \p count events in the order of time, origin top left; not used after the call
+  /// \param size width and height of the sensor
+  /// \param now_ns arrival time, see above
+  void addEvents(const Event* events, std::size_t count, SensorSize size, std::int64_t now_ns);
   /// Events that were dropped on their way here, between the last array and the next, because too
   /// many were waiting: counted as arrived and overflowed, and missing in the frames they belong
   /// to.
