@@ -6,7 +6,7 @@
 
 // Sanitizers instrument the code that picks the version before they are ready for it.
 #if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(FAST_EDI_SCALAR)
 #define FAST_EDI_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define FAST_EDI_VECTOR_CLONES

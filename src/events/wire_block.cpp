@@ -2,13 +2,15 @@
 
 #include <cstring>
 
-#if defined(__SSE2__)
+#include "base/vector_instructions.hpp"
+
+#if FAST_EDI_SSE2
 #include <emmintrin.h>
 #endif
 
 namespace fast_edi {
 
-#if defined(__SSE2__)
+#if FAST_EDI_SSE2
 
 namespace {
 

@@ -3,7 +3,9 @@
 #include <cstdlib>
 #include <limits>
 
-#if defined(__SSE2__)
+#include "base/vector_instructions.hpp"
+
+#if FAST_EDI_SSE2
 #include <emmintrin.h>
 #endif
 
@@ -27,7 +29,7 @@ inline void foldOneRamp(std::uint32_t code, double clock, std::uint16_t ticks,
   pixel.value -= pixel.value * k;
 }
 
-#if defined(__SSE2__)
+#if FAST_EDI_SSE2
 
 constexpr std::size_t kStride = 4;
 /// Events between a prefetch and its use: covers the latency of the second-level cache.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
-#if defined(__SSE2__)
+#include "base/vector_instructions.hpp"
+
+#if FAST_EDI_SSE2
 #include <emmintrin.h>
 #endif
 
@@ -31,7 +33,7 @@ float gainOf(const PixelSums& before, const PixelSums& after, const IntervalCloc
   return static_cast<float>(std::min(std::max(ratio, kMinGain), kMaxGain));
 }
 
-#if defined(__SSE2__)
+#if FAST_EDI_SSE2
 
 /// gainOf() for two pixels, in the lower two lanes; rounds alike.
 class TwoPixelGain {
@@ -90,7 +92,7 @@ class TwoPixelGain {
 void takeGains(const IntervalSums& before, const IntervalSums& after, std::size_t pixels,
                float* gain) {
   std::size_t i = 0;
-#if defined(__SSE2__)
+#if FAST_EDI_SSE2
   const TwoPixelGain two(before.clock, after.clock);
   constexpr std::size_t kStride = 4;
   for (; i + kStride <= pixels; i += kStride) {

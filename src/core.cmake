@@ -1,0 +1,29 @@
+# The core: the method, without ROS, OpenCV and catkin. The package includes this file, and so does
+# test/arm64/cross, which builds the core alone for another processor. Needs the target Eigen3::Eigen.
+
+option(FAST_EDI_SCALAR "Build the kernels' scalar paths, as on processors without SSE2 or AVX2" OFF)
+if(FAST_EDI_SCALAR)
+  add_compile_definitions(FAST_EDI_SCALAR)
+endif()
+
+# Its folders, in the order in which each may use those before it.
+set(FAST_EDI_CORE_ROOMS base events integral filters latent video parameters exposure calibration pipeline)
+get_filename_component(FAST_EDI_ROOT ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
+
+# Which folders of src/ a library is made of. Headers for other packages lie in include/, those of the
+# package itself beside their sources.
+function(fast_edi_library name)
+  set(sources "")
+  foreach(room IN LISTS ARGN)
+    file(GLOB room_sources CONFIGURE_DEPENDS ${FAST_EDI_ROOT}/src/${room}/*.cpp)
+    list(APPEND sources ${room_sources})
+  endforeach()
+  add_library(${name} ${sources})
+  target_include_directories(${name} PUBLIC
+    $<BUILD_INTERFACE:${FAST_EDI_ROOT}/include>
+    $<BUILD_INTERFACE:${FAST_EDI_ROOT}/src>
+    $<INSTALL_INTERFACE:${CATKIN_GLOBAL_INCLUDE_DESTINATION}>)
+endfunction()
+
+fast_edi_library(fast_edi_core ${FAST_EDI_CORE_ROOMS})
+target_link_libraries(fast_edi_core Eigen3::Eigen)
