@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <string_view>
 
+#include "fast_edi/recording/aedat2_reader.hpp"
+#include "fast_edi/recording/aedat3_reader.hpp"
 #include "fast_edi/recording/aedat4_reader.hpp"
 #include "fast_edi/recording/byte_source.hpp"
 
@@ -12,6 +15,8 @@ namespace {
 
 constexpr std::string_view kRosbagMagic = "#ROSBAG";
 constexpr std::string_view kAedat4Magic = "#!AER-DAT4";
+constexpr std::string_view kAedat2Magic = "#!AER-DAT2";
+constexpr std::string_view kAedat3Magic = "#!AER-DAT3.1";
 
 bool beginsWith(const FileSource& file, std::string_view magic) {
   std::vector<std::uint8_t> scratch;
@@ -22,9 +27,19 @@ bool beginsWith(const FileSource& file, std::string_view magic) {
 }  // namespace
 
 RecordingFormat formatOf(const std::string& path) {
+  std::error_code ignored;  // FileSource says what is wrong
+  if (std::filesystem::is_directory(path, ignored)) {
+    return RecordingFormat::kUnknown;
+  }
   const FileSource file(path);
   if (beginsWith(file, kRosbagMagic)) {
     return RecordingFormat::kRosbag;
+  }
+  if (beginsWith(file, kAedat2Magic)) {
+    return RecordingFormat::kAedat2;
+  }
+  if (beginsWith(file, kAedat3Magic)) {
+    return RecordingFormat::kAedat3;
   }
   return beginsWith(file, kAedat4Magic) ? RecordingFormat::kAedat4 : RecordingFormat::kUnknown;
 }
@@ -33,6 +48,10 @@ std::unique_ptr<Recording> openRecording(const std::string& path) {
   switch (formatOf(path)) {
     case RecordingFormat::kAedat4:
       return std::make_unique<Aedat4Reader>(path);
+    case RecordingFormat::kAedat2:
+      return std::make_unique<Aedat2Reader>(path);
+    case RecordingFormat::kAedat3:
+      return std::make_unique<Aedat3Reader>(path);
     case RecordingFormat::kRosbag:
     case RecordingFormat::kUnknown:
       break;

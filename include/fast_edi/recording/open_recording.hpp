@@ -9,7 +9,7 @@
 
 namespace fast_edi {
 
-enum class RecordingFormat { kUnknown, kRosbag, kAedat4 };
+enum class RecordingFormat { kUnknown, kRosbag, kAedat4, kAedat2, kAedat3 };
 
 /// By the first bytes of the file.
 /// \throws RecordingError when \p path cannot be read

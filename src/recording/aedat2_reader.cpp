@@ -1,0 +1,339 @@
+#include "fast_edi/recording/aedat2_reader.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+#include "fast_edi/exposure/stamp_limits.hpp"
+#include "fast_edi/recording/recording_error.hpp"
+#include "recording/aps_frame.hpp"
+#include "recording/davis_geometry.hpp"
+
+namespace fast_edi {
+namespace {
+
+// Streams, in this order.
+constexpr std::size_t kEvents = 0;
+constexpr std::size_t kFrames = 1;
+constexpr std::size_t kImu = 2;
+
+constexpr std::size_t kRecordBytes = 8;
+constexpr std::size_t kBlockBytes = std::size_t{1} << 18;  ///< of whole records
+constexpr std::size_t kMaxHeaderBytes = std::size_t{4} << 20;
+constexpr std::size_t kMaxNotes = 1000;
+constexpr std::int64_t kMaxWraps = 1000;  ///< of 71 minutes; more is damage
+
+// Bits of an address.
+constexpr std::uint32_t kNoEvent = 1U << 31;
+constexpr int kRowShift = 22;
+constexpr std::uint32_t kRowMask = 0x1ff;
+constexpr int kColumnShift = 12;
+constexpr std::uint32_t kColumnMask = 0x3ff;
+constexpr std::uint32_t kOn = 1U << 11;
+constexpr std::uint32_t kExternal = 1U << 10;  ///< of an event: a signal on the connector
+constexpr int kReadShift = 10;
+constexpr std::uint32_t kReadMask = 3;
+constexpr std::uint32_t kSampleMask = 0x3ff;
+constexpr int kImuCodeShift = 28;
+constexpr std::uint32_t kImuCodeMask = 7;
+constexpr int kImuDataShift = 12;
+
+enum class Read : std::uint32_t { kResetRead = 0, kSignalRead = 1, kImuNumber = 3 };
+/// Numbers of an IMU sample: acceleration, temperature, angular velocity.
+constexpr std::uint32_t kTemperature = 3;
+constexpr std::uint32_t kImuNumbers = 7;
+
+// jAER's setting of the cameras' IMU: 8 g and 500 deg/s of 16 bits.
+constexpr double kAccelerationScale = 9.80665 / 4096.0;                  ///< m/s^2
+constexpr double kAngularScale = 3.14159265358979323846 / 180.0 / 65.5;  ///< rad/s
+
+std::uint32_t bigEndian(const std::uint8_t* data) {
+  return static_cast<std::uint32_t>(data[0]) << 24 | static_cast<std::uint32_t>(data[1]) << 16 |
+         static_cast<std::uint32_t>(data[2]) << 8 | data[3];
+}
+
+}  // namespace
+
+class Aedat2Reader::Impl {
+ public:
+  explicit Impl(const std::string& path) : file_(path) {
+    const std::string camera = readHeader(path);
+    const std::optional<SensorSize> size = davisSize(camera);
+    if (!size) {
+      throw RecordingError(path + ": recorded by " +
+                           (camera.empty() ? "a camera that no line \"# AEChip: ...\" names"
+                                           : "\"" + camera + "\"") +
+                           ", expected a DAVIS240 or DAVIS346");
+    }
+    size_ = *size;
+    frame_.emplace(size_);
+    streams_ = {{StreamKind::kEvents, "events", camera, size_},
+                {StreamKind::kFrames, "frames", camera, size_},
+                {StreamKind::kImu, "imu", camera, {}}};
+  }
+
+  bool next(RecordingItem& item) {
+    given_.clear();
+    if (frame_->complete()) {
+      frame_->clear();  // the one that was given last
+    }
+    while (const std::uint8_t* record = nextRecord()) {
+      const std::uint32_t address = bigEndian(record);
+      const bool event = (address & kNoEvent) == 0;
+      const std::int64_t t_us = unwrapped(bigEndian(record + 4));
+      if (event) {
+        if (!given_.empty() &&
+            (given_.size() == kMaxItemEvents || t_us - given_.front().t_ns / 1000 >= kMaxItem_us ||
+             t_us * 1000 < given_.back().t_ns)) {
+          return giveEvents(item);  // this one begins the next
+        }
+        addEvent(address, t_us);
+      } else if (completes(address)) {
+        if (!given_.empty()) {
+          return giveEvents(item);
+        }
+        if (addOther(address, t_us, item)) {
+          take();
+          return true;
+        }
+      } else {
+        addOther(address, t_us, item);
+      }
+      take();
+    }
+    if (given_.empty()) {
+      noteEnd();
+      return false;
+    }
+    return giveEvents(item);
+  }
+
+  const std::vector<RecordedStream>& streams() const { return streams_; }
+  const std::vector<RecordingDamage>& damage() const { return damage_; }
+  std::uint64_t position() const { return offset_; }
+  std::uint64_t fileSize() const { return file_.size(); }
+
+ private:
+  void note(std::uint64_t offset, const std::string& what) {
+    if (damage_.size() < kMaxNotes) {
+      damage_.push_back({offset, what});
+    }
+  }
+
+  /// \return the camera that it names
+  std::string readHeader(const std::string& path) {
+    constexpr std::string_view kChip = "# AEChip: ";
+    std::vector<std::uint8_t> scratch;
+    const auto bytes =
+        static_cast<std::size_t>(std::min<std::uint64_t>(file_.size(), kMaxHeaderBytes));
+    const std::uint8_t* data = file_.read(0, bytes, scratch);
+    std::string_view text(reinterpret_cast<const char*>(data), data != nullptr ? bytes : 0);
+    std::string camera;
+    while (!text.empty() && text[0] == '#') {
+      const std::size_t end = text.find('\n');
+      if (end == std::string_view::npos) {
+        throw RecordingError(path + ", byte " + std::to_string(offset_) +
+                             ": a line without an end, expected lines beginning with # and "
+                             "records behind them");
+      }
+      std::string_view line = text.substr(0, end);
+      if (line.substr(0, kChip.size()) == kChip) {
+        line.remove_prefix(kChip.size());
+        camera = std::string(line.substr(0, line.find_last_not_of("\r ") + 1));
+      }
+      text.remove_prefix(end + 1);
+      offset_ += end + 1;
+    }
+    return camera;
+  }
+
+  /// The record at offset_; nullptr at the end.
+  const std::uint8_t* nextRecord() {
+    if (offset_ >= block_begin_ && offset_ + kRecordBytes <= block_end_) {
+      return block_.data() + (offset_ - block_begin_);
+    }
+    const std::uint64_t left = (file_.size() - offset_) / kRecordBytes * kRecordBytes;
+    const auto bytes = static_cast<std::size_t>(std::min<std::uint64_t>(left, kBlockBytes));
+    if (bytes == 0 || file_.read(offset_, bytes, block_) == nullptr) {
+      return nullptr;
+    }
+    block_begin_ = offset_;
+    block_end_ = offset_ + bytes;
+    return block_.data();
+  }
+
+  void take() { offset_ += kRecordBytes; }
+
+  /// Times have 32 bits and start anew every 71 minutes.
+  std::int64_t unwrapped(std::uint32_t t_us) const {
+    constexpr std::uint32_t kHalf = 1U << 31;
+    const bool wrapped = t_us < last_us_ && last_us_ - t_us > kHalf && high_us_ < kMaxWraps;
+    return ((high_us_ + (wrapped ? 1 : 0)) << 32) + t_us;
+  }
+
+  void advance(std::int64_t t_us) {
+    high_us_ = t_us >> 32;
+    last_us_ = static_cast<std::uint32_t>(t_us);
+    const std::int64_t t_ns = t_us * kNanosecondsPerMicrosecond;
+    record_ns_ = std::max(record_ns_, t_ns);
+  }
+
+  void addEvent(std::uint32_t address, std::int64_t t_us) {
+    advance(t_us);
+    if ((address & kExternal) != 0) {
+      return;
+    }
+    const int x = size_.width - 1 - static_cast<int>(address >> kColumnShift & kColumnMask);
+    const int y = size_.height - 1 - static_cast<int>(address >> kRowShift & kRowMask);
+    if (x < 0 || y < 0) {
+      note(offset_, "an event at column " + std::to_string(address >> kColumnShift & kColumnMask) +
+                        ", row " + std::to_string(address >> kRowShift & kRowMask) +
+                        ", expected one within " + sizeText());
+      return;
+    }
+    given_.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                      t_us * kNanosecondsPerMicrosecond, (address & kOn) != 0});
+  }
+
+  /// Whether a record may complete a frame or an IMU sample: what was read before is given first.
+  bool completes(std::uint32_t address) const {
+    const auto read = static_cast<Read>(address >> kReadShift & kReadMask);
+    if (read == Read::kImuNumber) {
+      return (address >> kImuCodeShift & kImuCodeMask) + 1 == kImuNumbers;
+    }
+    return read == Read::kSignalRead && frame_->missesOneSignal();
+  }
+
+  /// \return whether \p item holds something
+  bool addOther(std::uint32_t address, std::int64_t t_us, RecordingItem& item) {
+    advance(t_us);
+    const std::int64_t t_ns = t_us * kNanosecondsPerMicrosecond;
+    const auto read = static_cast<Read>(address >> kReadShift & kReadMask);
+    if (read == Read::kImuNumber) {
+      return addImu(address, t_ns, item);
+    }
+    const int x = static_cast<int>(address >> kColumnShift & kColumnMask);
+    const int y = size_.height - 1 - static_cast<int>(address >> kRowShift & kRowMask);
+    const auto sample = static_cast<std::uint16_t>(address & kSampleMask);
+    if (x >= size_.width || y < 0) {
+      note(offset_, "a read of a pixel outside of " + sizeText());
+      return false;
+    }
+    if (read == Read::kResetRead) {
+      if (frame_->addReset(x, y, sample, t_ns)) {
+        note(offset_, "a frame ends here before each of its pixels was read twice");
+      }
+    } else if (read == Read::kSignalRead) {
+      frame_->addSignal(x, y, sample, t_ns);
+    }
+    return frame_->complete() && giveFrame(item);
+  }
+
+  bool addImu(std::uint32_t address, std::int64_t t_ns, RecordingItem& item) {
+    const std::uint32_t code = address >> kImuCodeShift & kImuCodeMask;
+    if (code >= kImuNumbers) {
+      note(offset_, "number 7 of an IMU sample, expected 0 to 6");
+      return false;
+    }
+    const auto number =
+        static_cast<std::int16_t>(static_cast<std::uint16_t>(address >> kImuDataShift));
+    imu_complete_ = code == 0 || (imu_complete_ && code == imu_code_ + 1);
+    imu_code_ = code;
+    if (code < kTemperature) {
+      imu_.acceleration[code] = number * kAccelerationScale;
+    } else if (code > kTemperature) {
+      imu_.angular_velocity[code - kTemperature - 1] = number * kAngularScale;
+    }
+    if (code + 1 < kImuNumbers || !imu_complete_) {
+      return false;
+    }
+    imu_complete_ = false;
+    imu_.t_ns = t_ns;
+    item.stream = kImu;
+    item.record_ns = record_ns_;
+    item.content = imu_;
+    return true;
+  }
+
+  bool giveFrame(RecordingItem& item) {
+    RecordedFrame frame;
+    frame.exposure = frame_->exposure();
+    frame.stamp_ns = frame.exposure->at(ExposureInstant::kMid);
+    frame.size = size_;
+    frame.encoding = "mono16";
+    const std::vector<std::uint16_t>& pixels = frame_->pixels();
+    frame.pixels = reinterpret_cast<const std::uint8_t*>(pixels.data());
+    frame.bytes = pixels.size() * sizeof(pixels[0]);
+    item.stream = kFrames;
+    item.record_ns = record_ns_;
+    item.content = frame;
+    return true;
+  }
+
+  bool giveEvents(RecordingItem& item) {
+    item.stream = kEvents;
+    item.record_ns = record_ns_;
+    item.content = RecordedEvents{given_.data(), given_.size()};
+    return true;
+  }
+
+  void noteEnd() {
+    if (ended_) {
+      return;
+    }
+    ended_ = true;
+    if ((file_.size() - offset_) % kRecordBytes != 0) {
+      note(offset_, "a record of " + std::to_string((file_.size() - offset_) % kRecordBytes) +
+                        " bytes, expected 8: the file is cut");
+    }
+    if (!frame_->empty()) {
+      note(offset_, "the recording ends within a frame");
+    }
+  }
+
+  std::string sizeText() const {
+    return std::to_string(size_.width) + "x" + std::to_string(size_.height);
+  }
+
+  FileSource file_;
+  SensorSize size_;
+  std::vector<RecordedStream> streams_;
+  std::vector<RecordingDamage> damage_;
+  std::uint64_t offset_ = 0;
+  std::vector<std::uint8_t> block_;
+  std::uint64_t block_begin_ = 0;
+  std::uint64_t block_end_ = 0;
+  std::int64_t high_us_ = 0;  ///< how often times have started anew
+  std::uint32_t last_us_ = 0;
+  std::int64_t record_ns_ = 0;
+  std::vector<Event> given_;
+  std::optional<ApsFrame> frame_;
+  RecordedImu imu_;
+  std::uint32_t imu_code_ = 0;
+  bool imu_complete_ = false;  ///< no number before imu_code_ is missing
+  bool ended_ = false;
+};
+
+Aedat2Reader::Aedat2Reader(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+Aedat2Reader::~Aedat2Reader() = default;
+
+const std::vector<RecordedStream>& Aedat2Reader::streams() const {
+  return impl_->streams();
+}
+bool Aedat2Reader::next(RecordingItem& item) {
+  return impl_->next(item);
+}
+const std::vector<RecordingDamage>& Aedat2Reader::damage() const {
+  return impl_->damage();
+}
+std::uint64_t Aedat2Reader::position() const {
+  return impl_->position();
+}
+std::uint64_t Aedat2Reader::length() const {
+  return impl_->fileSize();
+}
+std::uint64_t Aedat2Reader::fileSize() const {
+  return impl_->fileSize();
+}
+
+}  // namespace fast_edi
