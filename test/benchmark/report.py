@@ -84,6 +84,29 @@ def closing(results, table):
                               None if goal is None else median <= goal)
 
 
+STAGES = (('plain/image', 'gains to image, plain EDI'),
+          ('default/image', 'gains to image, default'),
+          ('gain_filter', '  gain filter'),
+          ('gain_filter/log_and_exp', '    alone: logarithm and exponential'),
+          ('gain_filter/despeckle', '    alone: these and hot pixels'),
+          ('gain_filter/smooth', '    alone: these and non-local means'),
+          ('noise_estimate', '  noise estimate of the frame'),
+          ('frame_noise_filter', '  frame noise filter'),
+          ('copy_of_gains', 'copy of the gains for calibration'),
+          ('calibration_from_a_pair', 'calibration from a pair, behind the frame'))
+
+
+def stages(results, table):
+    """Where the default's close spends its time."""
+    for name, what in STAGES:
+        times = ['%.2f' % results.get(full, 'median_ms') for full in
+                 ['stages/%s/%s/%s/%d' % (name, scene, DAVIS, EVENTS[0]) for scene in SCENES]
+                 if full in results.benchmarks]
+        if times:
+            table.add('%s, 0.4 M events, %s' % (what, ' and '.join(SCENES)), '',
+                      ' and '.join(times) + ' ms')
+
+
 def taking_in(results, table):
     for scene, size in (('uniform', DAVIS), ('edges', DAVIS), ('uniform', '640x480'),
                         ('uniform', '1280x720')):
@@ -217,7 +240,7 @@ def main():
         sys.exit(__doc__)
     results = Results(sys.argv[1])
     table = Table()
-    for part in (end_to_end, closing, taking_in, memory, tcpros, bags, video,
+    for part in (end_to_end, closing, stages, taking_in, memory, tcpros, bags, video,
                  also_measured):
         part(results, table)
     print(table.text())
