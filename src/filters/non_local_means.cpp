@@ -13,53 +13,76 @@ namespace {
 constexpr int kPatchRadius = 1;
 constexpr float kPatchPixels = 9.0F;
 
+/// Loops run over blocks of as many values as the widest registers hold: without a remainder, which
+/// would take as long as several blocks. What they compute beyond a row's end is not used.
+constexpr std::size_t kBlock = 8;
+
+std::size_t blocksOf(std::size_t count) {
+  return (count + kBlock - 1) / kBlock;
+}
+
+/// Squared differences of two rows, and their sums with those of the two rows above.
 FAST_EDI_VECTOR_CLONES
-void squaredDifferences(const float* __restrict a, const float* __restrict b, std::size_t count,
-                        float* __restrict squares) {
-  for (std::size_t i = 0; i < count; ++i) {
+void addSquares(const float* __restrict a, const float* __restrict b,
+                const float* __restrict two_above, const float* __restrict above,
+                std::size_t blocks, float* __restrict squares, float* __restrict columns) {
+  for (std::size_t i = 0; i < blocks * kBlock; ++i) {
     const float d = a[i] - b[i];
-    squares[i] = d * d;
+    const float square = d * d;
+    squares[i] = square;
+    columns[i] = two_above[i] + above[i] + square;
   }
 }
 
+/// Weights of pairs, from sums of squares over columns of their patches.
+/// \param stride from one column of a patch to the next
+/// \param spatial_root fourth root of the spatial weight
 FAST_EDI_VECTOR_CLONES
-void sumOfThree(const float* __restrict in, std::size_t count, std::size_t stride,
-                float* __restrict sums) {
-  for (std::size_t i = 0; i < count; ++i) {
-    sums[i] = in[i] + in[i + stride] + in[i + 2 * stride];
+void weighPairs(const float* __restrict columns, std::size_t stride,
+                const float* __restrict precision_p, const float* __restrict precision_q,
+                std::size_t blocks, float spatial_root, float* __restrict weight) {
+  const float slope = 0.25F * spatial_root;
+  const float start = spatial_root + slope;
+  for (std::size_t i = 0; i < blocks * kBlock; ++i) {
+    const float sum = columns[i] + columns[i + stride] + columns[i + 2 * stride];
+    const float r = sum * (precision_p[i] + precision_q[i]);
+    const float root = std::max(0.0F, std::min(spatial_root, start - slope * r));
+    const float squared = root * root;
+    weight[i] = squared * squared;
   }
 }
 
-/// Weights of pairs, and those times the difference of their values.
-FAST_EDI_VECTOR_CLONES
-void weighPairs(const float* __restrict above, const float* __restrict middle,
-                const float* __restrict below, const float* __restrict precision_p,
-                const float* __restrict precision_q, const float* __restrict p,
-                const float* __restrict q, std::size_t count, float spatial,
-                float* __restrict weight, float* __restrict weighted) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const float r = (above[i] + middle[i] + below[i]) * (precision_p[i] + precision_q[i]);
-    // max(0, 1 - max(0, r - 1) / 4), twice; without comparisons, which keep GCC from vectorising.
-    const float t = 1.25F - 0.125F * ((r + 1.0F) + std::fabs(r - 1.0F));
-    const float twice = t + std::fabs(t);
-    const float squared = twice * twice;
-    const float w = spatial * (squared * squared);
-    weight[i] = w;
-    weighted[i] = w * (q[i] - p[i]);
-  }
-}
+/// Rows of the pixels at an offset and at the opposite one from those of a row, and the weights of
+/// both.
+struct Neighbours {
+  const float* ahead;
+  const float* ahead_weight;
+  const float* behind;
+  const float* behind_weight;
+};
 
-FAST_EDI_VECTOR_CLONES
-void addTo(const float* __restrict in, std::size_t count, float* __restrict sums) {
-  for (std::size_t i = 0; i < count; ++i) {
-    sums[i] += in[i];
-  }
-}
+/// Offsets that addNeighbours() takes at once; every window has a multiple of them.
+constexpr std::size_t kOffsetsAtOnce = 4;
 
+/// Adds weights, and those times the difference to the pixel itself.
 FAST_EDI_VECTOR_CLONES
-void subtractFrom(const float* __restrict in, std::size_t count, float* __restrict sums) {
-  for (std::size_t i = 0; i < count; ++i) {
-    sums[i] -= in[i];
+void addNeighbours(const Neighbours* neighbours, const float* __restrict values, std::size_t blocks,
+                   float* __restrict weighted, float* __restrict weight) {
+  const Neighbours a = neighbours[0];
+  const Neighbours b = neighbours[1];
+  const Neighbours c = neighbours[2];
+  const Neighbours d = neighbours[3];
+  const auto sumOf = [](const Neighbours& n, std::size_t i, float value) {
+    return n.ahead_weight[i] * (n.ahead[i] - value) + n.behind_weight[i] * (n.behind[i] - value);
+  };
+  const auto weightOf = [](const Neighbours& n, std::size_t i) {
+    return n.ahead_weight[i] + n.behind_weight[i];
+  };
+  for (std::size_t i = 0; i < blocks * kBlock; ++i) {
+    const float value = values[i];
+    weighted[i] += (sumOf(a, i, value) + sumOf(b, i, value)) +  //
+                   (sumOf(c, i, value) + sumOf(d, i, value));
+    weight[i] += (weightOf(a, i) + weightOf(b, i)) + (weightOf(c, i) + weightOf(d, i));
   }
 }
 
@@ -71,16 +94,14 @@ void addMeans(const float* __restrict values, const float* __restrict weighted,
   }
 }
 
+/// Of variances, in place: 1 / (36 s^2).
 FAST_EDI_VECTOR_CLONES
-void precisions(const float* __restrict variance, std::size_t count, float* __restrict precision) {
+void invert(std::size_t count, float* __restrict variance) {
   constexpr float kScale = 1.0F / (4.0F * kPatchPixels);
   for (std::size_t i = 0; i < count; ++i) {
-    precision[i] = kScale / variance[i];
+    variance[i] = kScale / variance[i];
   }
 }
-
-/// weighPairs() computes sixteen times the weight.
-constexpr float kPairWeightScale = 1.0F / 16.0F;
 
 }  // namespace
 
@@ -89,7 +110,9 @@ NonLocalMeans::NonLocalMeans(SensorSize size, const Settings& settings)
       settings_(settings),
       margin_px_((settings.window_radius + kPatchRadius) * settings.stride_px),
       padded_width_(static_cast<std::size_t>(size.width + 2 * margin_px_)),
-      box_rows_(static_cast<std::size_t>(2 * settings.stride_px + 1)) {
+      row_floats_(padded_width_ + 2 * kBlock),
+      square_rows_(static_cast<std::size_t>(2 * settings.stride_px + 1)),
+      weight_rows_(static_cast<std::size_t>(settings.window_radius * settings.stride_px + 1)) {
   if (settings.window_radius < 1 || settings.window_radius > kMaxWindowRadius) {
     throw std::invalid_argument("window radius is " + std::to_string(settings.window_radius) +
                                 ", expected 1 to " + std::to_string(kMaxWindowRadius));
@@ -103,27 +126,29 @@ NonLocalMeans::NonLocalMeans(SensorSize size, const Settings& settings)
                                 " px, expected 1 or 2");
   }
   const int radius = settings.window_radius;
-  const float inverse_space = 1.0F / (2.0F * settings.spatial_sigma * settings.spatial_sigma);
+  // The fourth root of exp(-d^2 / (2 sigma^2)) is exp(-d^2 / (8 sigma^2)).
+  const float inverse_space = 1.0F / (8.0F * settings.spatial_sigma * settings.spatial_sigma);
   for (int dy = 0; dy <= radius; ++dy) {
     for (int dx = dy == 0 ? 1 : -radius; dx <= radius; ++dx) {
-      offsets_.push_back(
-          {dx * settings.stride_px, dy * settings.stride_px,
-           kPairWeightScale * std::exp(-static_cast<float>(dx * dx + dy * dy) * inverse_space)});
+      offsets_.push_back({dx * settings.stride_px, dy * settings.stride_px,
+                          std::exp(-static_cast<float>(dx * dx + dy * dy) * inverse_space)});
     }
   }
-  const std::size_t padded = padded_width_ * static_cast<std::size_t>(size.height + 2 * margin_px_);
+  // Blocks may begin before a row, and end behind one that is shifted by an offset.
+  const std::size_t padded =
+      indexOf(0, size.height + 2 * margin_px_) + 2 * kBlock + static_cast<std::size_t>(margin_px_);
   values_.resize(padded);
   precision_.resize(padded);
-  weighted_.resize(padded);
-  weight_.resize(padded);
-  boxes_.resize(offsets_.size() * box_rows_ * padded_width_);
-  squares_.resize(padded_width_);
-  pair_weight_.resize(padded_width_);
+  squares_.resize(offsets_.size() * square_rows_ * row_floats_);
+  columns_.resize(row_floats_);
+  pair_weights_.resize(offsets_.size() * weight_rows_ * row_floats_);
+  weighted_.resize(row_floats_);
+  weight_.resize(row_floats_);
 }
 
 std::size_t NonLocalMeans::memoryBytes() const {
-  return (values_.capacity() + precision_.capacity() + weighted_.capacity() + weight_.capacity() +
-          boxes_.capacity() + squares_.capacity() + pair_weight_.capacity()) *
+  return (values_.capacity() + precision_.capacity() + squares_.capacity() + columns_.capacity() +
+          pair_weights_.capacity() + weighted_.capacity() + weight_.capacity()) *
          sizeof(float);
 }
 
@@ -138,7 +163,7 @@ void NonLocalMeans::pad(const float* in, std::vector<float>& padded) const {
   for (int y = -margin_px_; y < size_.height + margin_px_; ++y) {
     const float* source = in + static_cast<std::size_t>(inside(y, size_.height)) *
                                    static_cast<std::size_t>(size_.width);
-    float* row = padded.data() + static_cast<std::size_t>(y + margin_px_) * padded_width_;
+    float* row = padded.data() + indexOf(0, y + margin_px_);
     std::copy(source, source + size_.width, row + margin_px_);
     for (int x = 1; x <= margin_px_; ++x) {
       row[margin_px_ - x] = source[inside(-x, size_.width)];
@@ -147,74 +172,86 @@ void NonLocalMeans::pad(const float* in, std::vector<float>& padded) const {
   }
 }
 
-float* NonLocalMeans::boxRow(std::size_t offset, int row) {
-  const std::size_t slot = static_cast<std::size_t>(row) % box_rows_;
-  return boxes_.data() + (offset * box_rows_ + slot) * padded_width_;
+/// Of the padded planes, whose first pixel is at (0, 0).
+std::size_t NonLocalMeans::indexOf(int x, int y) const {
+  return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(kBlock) +
+                                  static_cast<std::ptrdiff_t>(y) *
+                                      static_cast<std::ptrdiff_t>(padded_width_) +
+                                  static_cast<std::ptrdiff_t>(x));
 }
 
-/// Squared differences between a row and the one at an offset, summed over patches' rows. The sum
-/// for the pixel at x stands at x - stride of the columns that compare() uses.
-void NonLocalMeans::sumDifferences(std::size_t offset, int row) {
-  const Offset& o = offsets_[offset];
-  const int begin = margin_px_ - std::max(o.dx, 0) - settings_.stride_px;
-  const int end = margin_px_ + size_.width + std::max(-o.dx, 0) + settings_.stride_px;
-  const auto count = static_cast<std::size_t>(end - begin);
-  const float* p = values_.data() + static_cast<std::size_t>(row) * padded_width_ + begin;
-  const float* q =
-      values_.data() + static_cast<std::size_t>(row + o.dy) * padded_width_ + (begin + o.dx);
-  const auto stride = static_cast<std::size_t>(settings_.stride_px);
-  squaredDifferences(p, q, count, squares_.data());
-  sumOfThree(squares_.data(), count - 2 * stride, stride, boxRow(offset, row));
+/// One of the last \p rows_kept rows of an offset.
+float* NonLocalMeans::rowOf(std::vector<float>& rows, std::size_t rows_kept, std::size_t offset,
+                            int y) const {
+  const std::size_t slot = (static_cast<std::size_t>(y) + rows_kept) % rows_kept;
+  return rows.data() + (offset * rows_kept + slot) * row_floats_ + kBlock;
 }
 
-/// Weighs the pixels of a row and those at an offset, for both.
-void NonLocalMeans::compare(std::size_t offset, int row) {
+/// Squared differences between a row and the one at an offset. Leaves in columns_ their sums with
+/// those of the two rows of a patch above.
+void NonLocalMeans::addRow(std::size_t offset, int y) {
   const Offset& o = offsets_[offset];
-  const int begin = margin_px_ - std::max(o.dx, 0);
-  const auto count =
-      static_cast<std::size_t>(margin_px_ + size_.width + std::max(-o.dx, 0) - begin);
-  const std::size_t p = static_cast<std::size_t>(row) * padded_width_ +  //
-                        static_cast<std::size_t>(begin);
-  const std::size_t q =
-      static_cast<std::size_t>(row + o.dy) * padded_width_ + static_cast<std::size_t>(begin + o.dx);
-  weighPairs(boxRow(offset, row - settings_.stride_px), boxRow(offset, row),
-             boxRow(offset, row + settings_.stride_px), precision_.data() + p,
-             precision_.data() + q, values_.data() + p, values_.data() + q, count, o.spatial_weight,
-             pair_weight_.data(), squares_.data());
-  addTo(pair_weight_.data(), count, weight_.data() + p);
-  addTo(squares_.data(), count, weighted_.data() + p);
-  addTo(pair_weight_.data(), count, weight_.data() + q);
-  subtractFrom(squares_.data(), count, weighted_.data() + q);
+  const auto squares = [this, offset](int i) { return rowOf(squares_, square_rows_, offset, i); };
+  addSquares(values_.data() + indexOf(0, y), values_.data() + indexOf(o.dx, y + o.dy),
+             squares(y - 2 * settings_.stride_px), squares(y - settings_.stride_px),
+             blocksOf(padded_width_), squares(y), columns_.data());
+}
+
+/// Weighs the pixels of a row and those at an offset. \pre columns_ are those of the row's patches
+void NonLocalMeans::weighRow(std::size_t offset, int y) {
+  const Offset& o = offsets_[offset];
+  const int stride = settings_.stride_px;
+  weighPairs(columns_.data(), static_cast<std::size_t>(stride),
+             precision_.data() + indexOf(stride, y),
+             precision_.data() + indexOf(stride + o.dx, y + o.dy),
+             blocksOf(padded_width_ - 2 * static_cast<std::size_t>(stride)), o.spatial_root,
+             rowOf(pair_weights_, weight_rows_, offset, y) + stride);
+}
+
+/// \param y of a padded row within the plane
+/// \pre the weights of the row and of those that reach it are there
+void NonLocalMeans::averageRow(int y, float* out) {
+  const auto width = static_cast<std::size_t>(size_.width);
+  const float* values = values_.data() + indexOf(margin_px_, y);
+  std::fill(weighted_.begin(), weighted_.end(), 0.0F);
+  std::fill(weight_.begin(), weight_.end(), 1.0F);
+  for (std::size_t first = 0; first < offsets_.size(); first += kOffsetsAtOnce) {
+    Neighbours neighbours[kOffsetsAtOnce];
+    for (std::size_t i = 0; i < kOffsetsAtOnce; ++i) {
+      const Offset& o = offsets_[first + i];
+      const auto weights = [this, offset = first + i](int row) {
+        return rowOf(pair_weights_, weight_rows_, offset, row) + margin_px_;
+      };
+      neighbours[i] = {values_.data() + indexOf(margin_px_ + o.dx, y + o.dy), weights(y),
+                       values_.data() + indexOf(margin_px_ - o.dx, y - o.dy),
+                       weights(y - o.dy) - o.dx};
+    }
+    addNeighbours(neighbours, values, blocksOf(width), weighted_.data(), weight_.data());
+  }
+  addMeans(values, weighted_.data(), weight_.data(), width, out);
 }
 
 void NonLocalMeans::apply(const float* in, const float* noise_variance, float* out) {
   pad(in, values_);
   pad(noise_variance, precision_);
-  precisions(precision_.data(), precision_.size(), weighted_.data());
-  precision_.swap(weighted_);
-  std::fill(weighted_.begin(), weighted_.end(), 0.0F);
-  std::fill(weight_.begin(), weight_.end(), 1.0F);
+  invert(indexOf(0, size_.height + 2 * margin_px_) - kBlock, precision_.data() + kBlock);
 
   const int stride = settings_.stride_px;
   const int first = margin_px_ - settings_.window_radius * stride;
-  const int end = margin_px_ + size_.height;
   for (std::size_t offset = 0; offset < offsets_.size(); ++offset) {
-    for (int row = first - stride; row < first + stride; ++row) {
-      sumDifferences(offset, row);
+    for (int y = first - stride; y < first + stride; ++y) {
+      addRow(offset, y);
     }
   }
-  for (int row = first; row < end; ++row) {
+  for (int y = first; y < margin_px_ + size_.height; ++y) {
     for (std::size_t offset = 0; offset < offsets_.size(); ++offset) {
-      sumDifferences(offset, row + stride);
-      compare(offset, row);
+      addRow(offset, y + stride);
+      weighRow(offset, y);
     }
-  }
-  const auto width = static_cast<std::size_t>(size_.width);
-  for (int y = 0; y < size_.height; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y + margin_px_) * padded_width_ +
-                            static_cast<std::size_t>(margin_px_);
-    addMeans(values_.data() + row, weighted_.data() + row, weight_.data() + row, width,
-             out + static_cast<std::size_t>(y) * width);
+    if (y >= margin_px_) {
+      averageRow(y, out + static_cast<std::size_t>(y - margin_px_) *
+                              static_cast<std::size_t>(size_.width));
+    }
   }
 }
 

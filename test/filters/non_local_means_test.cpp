@@ -72,7 +72,7 @@ TEST(NonLocalMeans, IsTheFormulaOfTheHeader) {
   for (std::size_t i = 0; i < variance.size(); ++i) {
     variance[i] = 0.004F + 0.001F * static_cast<float>(i % 13);
   }
-  for (const int radius : {1, 2, 3}) {
+  for (const int radius : {1, 2, 3, 4}) {
     for (const int stride : {1, 2}) {
       const NonLocalMeans::Settings settings{radius, 1.2F, stride};
       NonLocalMeans filter(kSize, settings);

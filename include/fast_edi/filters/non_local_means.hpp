@@ -45,29 +45,33 @@ class NonLocalMeans {
 
  private:
   struct Offset {
-    int dx;  ///< [px]
-    int dy;  ///< [px], >= 0
-    float spatial_weight;
+    int dx;              ///< [px]
+    int dy;              ///< [px], >= 0
+    float spatial_root;  ///< fourth root of the spatial weight
   };
 
   void pad(const float* in, std::vector<float>& padded) const;
-  float* boxRow(std::size_t offset, int row);
-  void sumDifferences(std::size_t offset, int row);
-  void compare(std::size_t offset, int row);
+  std::size_t indexOf(int x, int y) const;
+  float* rowOf(std::vector<float>& rows, std::size_t rows_kept, std::size_t offset, int y) const;
+  void addRow(std::size_t offset, int y);
+  void weighRow(std::size_t offset, int y);
+  void averageRow(int y, float* out);
 
   SensorSize size_;
   Settings settings_;
   int margin_px_;
   std::size_t padded_width_;
-  std::size_t box_rows_;  ///< rows of differences kept for each offset
+  std::size_t row_floats_;   ///< of what is kept by rows
+  std::size_t square_rows_;  ///< kept for each offset, as many as a patch reaches over
+  std::size_t weight_rows_;  ///< kept for each offset, as far as it reaches
   std::vector<Offset> offsets_;
   std::vector<float> values_;     ///< padded
   std::vector<float> precision_;  ///< padded: 1 / (36 s^2)
-  std::vector<float> weighted_;   ///< padded: sum of w (v(q) - v(p))
-  std::vector<float> weight_;     ///< padded: sum of w
-  std::vector<float> boxes_;      ///< squared differences, summed over three neighbours in a row
-  std::vector<float> squares_;    ///< of one row
-  std::vector<float> pair_weight_;
+  std::vector<float> squares_;    ///< of differences
+  std::vector<float> columns_;    ///< of a row: squares summed over the rows of patches
+  std::vector<float> pair_weights_;
+  std::vector<float> weighted_;  ///< of a row: sum of w (v(q) - v(p))
+  std::vector<float> weight_;    ///< of a row: sum of w
 };
 
 }  // namespace fast_edi
