@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/vector_clones.hpp"
 #include "fast_edi/base/image_plane.hpp"
 
 namespace fast_edi {
 namespace {
 
-constexpr int kBlock_px = 8;
+constexpr std::size_t kBlock_px = 8;
 constexpr std::size_t kPercentile = 20;
 /// sqrt(12 / pi): the mean absolute response of (1, -2, 1) to white noise of unit variance.
 constexpr float kResponse = 1.9544100F;
@@ -16,45 +17,58 @@ constexpr float kResponse = 1.9544100F;
 constexpr float kPercentileOfMean = 0.92F;
 constexpr float kMaxLevel_dn = 255.0F;
 
-/// Mean absolute response within a block; negative when it cannot be judged.
-/// \param corner upper left pixel of the block
-float blockMean(const float* corner, std::size_t width, std::size_t stride, float highest) {
-  float sum = 0.0F;
-  float lowest_level = highest;
-  float highest_level = 0.0F;
-  for (std::size_t y = 0; y < kBlock_px; ++y) {
-    const float* row = corner + y * width;
-    for (std::size_t x = 0; x < kBlock_px; ++x) {
-      const float left = row[x];
-      const float right = row[x + 2 * stride];
-      sum += std::fabs(left - 2.0F * row[x + stride] + right);
-      lowest_level = std::min({lowest_level, left, right});
-      highest_level = std::max({highest_level, left, right});
-    }
+/// Adds a row to what each column of a block adds up to.
+FAST_EDI_VECTOR_CLONES
+void addRow(const float* __restrict row, std::size_t count, std::size_t stride,
+            float* __restrict response, float* __restrict lowest, float* __restrict highest) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float left = row[i];
+    const float right = row[i + 2 * stride];
+    response[i] += std::fabs(left - 2.0F * row[i + stride] + right);
+    lowest[i] = std::min(lowest[i], std::min(left, right));
+    highest[i] = std::max(highest[i], std::max(left, right));
   }
-  const bool cut_off = lowest_level <= 0.0F || highest_level >= highest;
-  return cut_off ? -1.0F : sum / static_cast<float>(kBlock_px * kBlock_px);
 }
 
 }  // namespace
 
+/// Takes the means of the blocks from a row of the plane on, those that can be judged.
+void FrameNoiseEstimate::takeBlocks(const float* row, std::size_t width, std::size_t stride,
+                                    float saturated) {
+  if (width < kBlock_px + 2 * stride) {
+    return;
+  }
+  const std::size_t columns = width - 2 * stride;
+  response_.assign(columns, 0.0F);
+  lowest_.assign(columns, saturated);
+  highest_.assign(columns, 0.0F);
+  for (std::size_t y = 0; y < kBlock_px; ++y) {
+    addRow(row + y * width, columns, stride, response_.data(), lowest_.data(), highest_.data());
+  }
+  for (std::size_t x = 0; x + kBlock_px <= columns; x += kBlock_px) {
+    float sum = 0.0F;
+    bool cut_off = false;
+    for (std::size_t i = x; i < x + kBlock_px; ++i) {
+      sum += response_[i];
+      cut_off |= lowest_[i] <= 0.0F || highest_[i] >= saturated;
+    }
+    if (!cut_off) {
+      block_means_.push_back(sum / static_cast<float>(kBlock_px * kBlock_px));
+    }
+  }
+}
+
 float FrameNoiseEstimate::of(const ImageView& frame) {
   const auto dn = static_cast<float>(dnPerDn8(frame.format));
-  const int stride = isBayer(frame.format) ? 2 : 1;
+  const std::size_t stride = isBayer(frame.format) ? 2 : 1;
   const auto width = static_cast<std::size_t>(frame.size.width);
+  const auto height = static_cast<std::size_t>(frame.size.height);
   plane_.resize(frame.size.pixelCount());
   block_means_.clear();
   for (int channel = 0; channel < channels(frame.format); ++channel) {
     loadPlane(frame, channel, plane_.data());
-    for (int y = 0; y + kBlock_px <= frame.size.height; y += kBlock_px) {
-      for (int x = 0; x + kBlock_px + 2 * stride <= frame.size.width; x += kBlock_px) {
-        const float mean = blockMean(
-            plane_.data() + static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x),
-            width, static_cast<std::size_t>(stride), kMaxLevel_dn * dn);
-        if (mean >= 0.0F) {
-          block_means_.push_back(mean);
-        }
-      }
+    for (std::size_t y = 0; y + kBlock_px <= height; y += kBlock_px) {
+      takeBlocks(plane_.data() + y * width, width, stride, kMaxLevel_dn * dn);
     }
   }
   if (block_means_.empty()) {

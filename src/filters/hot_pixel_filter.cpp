@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/vector_clones.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -21,21 +23,36 @@ constexpr float kBeyondRange_log = 1.5F;
 /// Keeps black from making every range a large one [8-bit DN].
 constexpr float kLevelFloor_dn = 2.0F;
 
-/// What the events of a pixel add up to [natural log].
-float changeOf(const ExposureEvents& events, std::size_t pixel) {
-  return std::fabs(static_cast<float>(events.thresholds.on) * events.on(pixel) -
-                   static_cast<float>(events.thresholds.off) * events.off(pixel));
+/// What the events of each pixel add up to [natural log], and whether these can be those of a hot
+/// pixel at all: few are, so that the look at their neighbours costs little.
+FAST_EDI_VECTOR_CLONES
+void changesOf(const std::uint16_t* __restrict off_and_on, const float* __restrict count,
+               std::size_t pixels, float threshold_on, float threshold_off,
+               float* __restrict change, std::int32_t* __restrict is_suspect) {
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const auto off = static_cast<float>(static_cast<int>(off_and_on[2 * i]));
+    const auto on = static_cast<float>(static_cast<int>(off_and_on[2 * i + 1]));
+    change[i] = std::fabs(threshold_on * on - threshold_off * off);
+    // A frame's range is not negative.
+    const bool suspect = (count[i] >= kFewestEvents) &
+                         (std::min(on, off) <= kOtherPolarity * count[i]) &
+                         (change[i] > kBeyondRange_log);
+    is_suspect[i] = suspect ? 1 : 0;
+  }
 }
 
 }  // namespace
 
-HotPixelFilter::HotPixelFilter(SensorSize size) : size_(size), is_hot_(size.pixelCount()) {}
+HotPixelFilter::HotPixelFilter(SensorSize size)
+    : size_(size),
+      change_(size.pixelCount()),
+      is_suspect_(size.pixelCount()),
+      is_hot_(size.pixelCount()) {}
 
-bool HotPixelFilter::isHot(int x, int y, const float* level_dn, const float* count,
-                           const ExposureEvents& events) const {
+bool HotPixelFilter::isHot(int x, int y, const float* level_dn, const float* count) const {
   const auto width = static_cast<std::size_t>(size_.width);
   const std::size_t pixel = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-  const float change = changeOf(events, pixel);
+  const float change = change_[pixel];
   int alike = 0;
   float lowest = level_dn[pixel];
   float highest = lowest;
@@ -44,8 +61,7 @@ bool HotPixelFilter::isHot(int x, int y, const float* level_dn, const float* cou
     for (int column = std::max(x - kRadius, 0); column <= std::min(x + kRadius, size_.width - 1);
          ++column) {
       const std::size_t other = begin + static_cast<std::size_t>(column);
-      const bool is_alike =
-          changeOf(events, other) >= kAlike * change || count[other] >= count[pixel];
+      const bool is_alike = change_[other] >= kAlike * change || count[other] >= count[pixel];
       alike += is_alike ? 1 : 0;
       lowest = std::min(lowest, level_dn[other]);
       highest = std::max(highest, level_dn[other]);
@@ -64,14 +80,14 @@ std::size_t HotPixelFilter::find(const float* level_dn, const float* count,
     is_hot_[pixel] = 0;
   }
   hot_.clear();
+  changesOf(events.counts, count, is_hot_.size(), static_cast<float>(events.thresholds.on),
+            static_cast<float>(events.thresholds.off), change_.data(), is_suspect_.data());
   const auto width = static_cast<std::size_t>(size_.width);
   for (std::size_t pixel = 0; pixel < is_hot_.size(); ++pixel) {
-    if (count[pixel] < kFewestEvents ||
-        std::min(events.on(pixel), events.off(pixel)) > kOtherPolarity * count[pixel]) {
+    if (is_suspect_[pixel] == 0) {
       continue;
     }
-    if (isHot(static_cast<int>(pixel % width), static_cast<int>(pixel / width), level_dn, count,
-              events)) {
+    if (isHot(static_cast<int>(pixel % width), static_cast<int>(pixel / width), level_dn, count)) {
       hot_.push_back(pixel);
       is_hot_[pixel] = 1;
     }

@@ -24,11 +24,19 @@ class FrameNoiseEstimate {
   float of(const ImageView& frame);
 
   std::size_t memoryBytes() const {
-    return (plane_.capacity() + block_means_.capacity()) * sizeof(float);
+    return (plane_.capacity() + response_.capacity() + lowest_.capacity() + highest_.capacity() +
+            block_means_.capacity()) *
+           sizeof(float);
   }
 
  private:
+  void takeBlocks(const float* row, std::size_t width, std::size_t stride, float saturated);
+
   std::vector<float> plane_;
+  // Of the columns of a row of blocks.
+  std::vector<float> response_;
+  std::vector<float> lowest_;
+  std::vector<float> highest_;
   std::vector<float> block_means_;
 };
 

@@ -43,15 +43,17 @@ class HotPixelFilter {
 
   std::size_t memoryBytes() const {
     return hot_.capacity() * sizeof(std::size_t) + is_hot_.capacity() +
-           filled_.capacity() * sizeof(float);
+           (change_.capacity() + filled_.capacity()) * sizeof(float) +
+           is_suspect_.capacity() * sizeof(std::int32_t);
   }
 
  private:
-  bool isHot(int x, int y, const float* level_dn, const float* count,
-             const ExposureEvents& events) const;
+  bool isHot(int x, int y, const float* level_dn, const float* count) const;
   float meanAround(std::size_t pixel, const float* plane) const;
 
   SensorSize size_;
+  std::vector<float> change_;  ///< what the events of each pixel add up to [natural log]
+  std::vector<std::int32_t> is_suspect_;
   std::vector<std::size_t> hot_;      ///< row-major indices
   std::vector<std::uint8_t> is_hot_;  ///< of each pixel
   std::vector<float> filled_;         ///< their new values
