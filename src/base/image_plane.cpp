@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "base/vector_clones.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -26,6 +28,21 @@ void storeRow(const float* in, std::size_t count, std::size_t stride, std::uint8
   }
 }
 
+// By far the most frequent case, as vector code.
+FAST_EDI_VECTOR_CLONES
+void loadBytes(const std::uint8_t* __restrict in, std::size_t count, float* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    out[i] = static_cast<float>(static_cast<int>(in[i]));
+  }
+}
+
+FAST_EDI_VECTOR_CLONES
+void storeBytes(const float* __restrict in, std::size_t count, std::uint8_t* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    out[i] = static_cast<std::uint8_t>(static_cast<int>(in[i] + kHalf));
+  }
+}
+
 }  // namespace
 
 void loadPlane(const ImageView& image, int channel, float* plane) {
@@ -37,6 +54,8 @@ void loadPlane(const ImageView& image, int channel, float* plane) {
     const std::uint8_t* in = image.row(y) + channel * bytes;
     if (bytes == 2) {
       loadRow<std::uint16_t>(in, width, stride, row);
+    } else if (stride == 1) {
+      loadBytes(in, width, row);
     } else {
       loadRow<std::uint8_t>(in, width, stride, row);
     }
@@ -52,6 +71,8 @@ void storePlane(const float* plane, int channel, const MutableImageView& image) 
     std::uint8_t* out = image.row(y) + channel * bytes;
     if (bytes == 2) {
       storeRow<std::uint16_t>(row, width, stride, out);
+    } else if (stride == 1) {
+      storeBytes(row, width, out);
     } else {
       storeRow<std::uint8_t>(row, width, stride, out);
     }
