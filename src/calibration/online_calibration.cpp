@@ -67,6 +67,15 @@ std::uint64_t eventsIn(const PixelEventLists& lists, const ExposureInterval& int
   return lists.lowerBound(interval.end_ns) - lists.lowerBound(interval.start_ns);
 }
 
+/// Of events in the order of time, so that the next ones' pixels come into the cache in time.
+constexpr std::size_t kPrefetchDistance = 24;
+
+/// Of a pair: 0 within the first exposure, 1 between both, 2 within the second.
+std::size_t phaseOf(std::int64_t t_ns, const ExposureInterval& first,
+                    const ExposureInterval& second) {
+  return t_ns < first.end_ns ? 0 : t_ns < second.start_ns ? 1 : 2;
+}
+
 /// True when the time between two exposures holds (almost) no events although they do.
 bool isHole(const PixelEventLists& lists, const ExposureInterval& first,
             const ExposureInterval& second) {
@@ -197,10 +206,19 @@ OnlineCalibration::Band OnlineCalibration::gather(const Frame& frame,
   const ExposureInterval& first = previous_window_;
   const ExposureInterval& second = frame.window;
   constexpr auto kNsPerMs = static_cast<float>(kNanosecondsPerMillisecond);
-  const float per_first_ns = 1.0F / static_cast<float>(first.length());
-  const float per_second_ns = 1.0F / static_cast<float>(second.length());
+  // By phase: within the first exposure, between both, within the second.
+  const float rate[3] = {1.0F / static_cast<float>(first.length()), 0.0F,
+                         -1.0F / static_cast<float>(second.length())};
+  const std::int64_t origin_ns[3] = {first.start_ns, 0, second.end_ns};
+  const float constant[3] = {0.0F, 1.0F, 0.0F};
   const float step[2] = {static_cast<float>(in_force_.thresholds.step(false)),
                          static_cast<float>(in_force_.thresholds.step(true))};
+  float slope[3][2];  // by phase and polarity
+  for (std::size_t phase = 0; phase < 3; ++phase) {
+    for (std::size_t on = 0; on < 2; ++on) {
+      slope[phase][on] = -step[on] * rate[phase] * kNsPerMs;
+    }
+  }
   const LevelModel& level = settings_.level;
   const bool has_ramps = !level.isStaircase();
   const LevelInstant first_reference{previous_reference_ns_, first.end_ns};
@@ -209,11 +227,15 @@ OnlineCalibration::Band OnlineCalibration::gather(const Frame& frame,
   const std::uint64_t begin = lists.lowerBound(first.start_ns);
   const std::uint64_t end = lists.lowerBound(second.end_ns);
   const Band band = nextBand(end - begin);
-  std::fill_n(evidence_.begin(), band.pixels, PixelEvidence{0.0F, 0.0F, 0.0F, 0.0F, 0.0F});
+  std::fill_n(evidence_.begin(), band.pixels, PixelEvidence{});
   const auto first_pixel = static_cast<std::uint32_t>(band.first_pixel);
   for (std::uint64_t sequence = begin; sequence < end;) {
     const PackedEventSpan span = lists.span(sequence, end);
     for (std::size_t i = 0; i < span.count; ++i) {
+      const PackedEvent& coming = span.data[std::min(i + kPrefetchDistance, span.count - 1)];
+      __builtin_prefetch(
+          evidence_.data() + std::min<std::size_t>((coming.code >> 1) - first_pixel, band.pixels),
+          1);
       const std::uint32_t in_band = (span.data[i].code >> 1) - first_pixel;
       if (in_band >= band.pixels) {
         continue;
@@ -222,17 +244,13 @@ OnlineCalibration::Band OnlineCalibration::gather(const Frame& frame,
       const std::uint16_t ticks = has_ramps ? span.intervals[i] : std::uint16_t{0};
       const std::uint32_t on = span.data[i].code & 1u;
       PixelEvidence& pixel = evidence_[in_band];
-      float weight = 1.0F;
       const std::int64_t mean_ns =
           t_ns - static_cast<std::int64_t>(mean_lead * static_cast<float>(level.rampBefore(ticks)));
-      if (mean_ns < first.end_ns) {
-        weight = std::max(0.0F, static_cast<float>(mean_ns - first.start_ns) * per_first_ns);
-        pixel.slope -= step[on] * per_first_ns * kNsPerMs;
-      } else if (mean_ns >= second.start_ns) {
-        weight = static_cast<float>(second.end_ns - mean_ns) * per_second_ns;
-        pixel.slope += step[on] * per_second_ns * kNsPerMs;
-      }
-      (on != 0 ? pixel.on : pixel.off) += weight;
+      const std::size_t phase = phaseOf(mean_ns, first, second);
+      const float weight = std::max(
+          0.0F, static_cast<float>(mean_ns - origin_ns[phase]) * rate[phase] + constant[phase]);
+      pixel.weight[on] += weight;
+      pixel.slope += slope[phase][on];
       pixel.count += 1.0F;
       if (t_ns >= previous_reference_ns_) {
         pixel.level += step[on] * static_cast<float>(level.reached(t_ns, ticks, second_reference) -
@@ -253,7 +271,7 @@ std::size_t OnlineCalibration::fit(const Band& band, NormalEquations& equations)
   std::size_t pixels = 0;
   for (std::size_t i = 0; i < band.pixels; ++i) {
     const PixelEvidence& pixel = evidence_[i];
-    const float change = std::fabs(pixel.on - pixel.off);
+    const float change = std::fabs(pixel.weight[1] - pixel.weight[0]);
     if (change < kLeastChange || pixel.count > kMostEventsPerChange * change + kSpareEvents) {
       continue;
     }
@@ -270,7 +288,8 @@ std::size_t OnlineCalibration::fit(const Band& band, NormalEquations& equations)
     const double weight =
         intensity /
         ((1.0 + scaled * scaled) * (1.0 + kVariancePerEvent * static_cast<double>(pixel.count)));
-    const Eigen::Vector3d x(static_cast<double>(pixel.on), -static_cast<double>(pixel.off),
+    const Eigen::Vector3d x(static_cast<double>(pixel.weight[1]),
+                            -static_cast<double>(pixel.weight[0]),
                             static_cast<double>(pixel.slope));
     equations.matrix += weight * x * x.transpose();
     equations.vector += weight * (residual + x.dot(theta)) * x;

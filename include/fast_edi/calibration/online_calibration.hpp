@@ -115,11 +115,10 @@ class OnlineCalibration {
  private:
   /// What the events of a pair of frames say about one pixel.
   struct PixelEvidence {
-    float on;     ///< x_on
-    float off;    ///< x_off
-    float slope;  ///< x_t [1/ms]
-    float level;  ///< l
-    float count;  ///< events
+    float weight[2];  ///< x_off, x_on
+    float slope;      ///< x_t [1/ms]
+    float level;      ///< l
+    float count;      ///< events
   };
   /// Weighted X'X and X'(r + X theta), theta = (c_on, c_off, delay in ms).
   struct NormalEquations {
