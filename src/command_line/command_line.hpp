@@ -12,8 +12,8 @@
 #include <boost/program_options.hpp>
 
 #include "fast_edi/bags/message_source.hpp"
+#include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/messages/topic_names.hpp"
 
 namespace fast_edi {
 namespace tools {

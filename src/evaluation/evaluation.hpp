@@ -12,9 +12,9 @@
 
 #include <opencv2/core.hpp>
 
-#include "evaluation/frame_scorer.hpp"
 #include "evaluation/method_comparison.hpp"
 #include "fast_edi/base/types.hpp"
+#include "measures/frame_scorer.hpp"
 
 namespace fast_edi {
 

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "evaluation/image_metrics.hpp"
 #include "evaluation/pipeline.hpp"
 #include "fast_edi/base/deblur_counters.hpp"
 #include "fast_edi/events/event_stream.hpp"
 #include "fast_edi/integral/double_integral.hpp"
+#include "measures/image_metrics.hpp"
 
 namespace fast_edi {
 namespace {

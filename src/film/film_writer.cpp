@@ -10,8 +10,8 @@
 
 #include <opencv2/videoio.hpp>
 
+#include "fast_edi/latent/latent_instants.hpp"
 #include "fast_edi/messages/image_pixels.hpp"
-#include "fast_edi/video/latent_instants.hpp"
 
 namespace fast_edi {
 namespace {

@@ -12,9 +12,9 @@
 #include "fast_edi/base/number_text.hpp"
 #include "fast_edi/calibration/contrast_from_bias.hpp"
 #include "fast_edi/messages/message_conversion.hpp"
+#include "fast_edi/messages/steady_time.hpp"
 #include "node/bias_update.hpp"
 #include "node/parameter_loading.hpp"
-#include "node/steady_time.hpp"
 
 namespace fast_edi {
 namespace {

@@ -7,7 +7,7 @@
 #include <ros/this_node.h>
 #include <ros/transport_hints.h>
 
-#include "node/steady_time.hpp"
+#include "fast_edi/messages/steady_time.hpp"
 
 #ifdef FAST_EDI_HAVE_DVS_MSGS
 #include <dvs_msgs/EventArray.h>

@@ -17,12 +17,12 @@
 #include <opencv2/core.hpp>
 
 #include "fast_edi/base/types.hpp"
+#include "scenes/room_trajectory.hpp"
+#include "scenes/simulation_settings.hpp"
+#include "scenes/world.hpp"
 #include "simulation/event_sensor.hpp"
 #include "simulation/frame_sensor.hpp"
 #include "simulation/imu_sensor.hpp"
-#include "simulation/room_trajectory.hpp"
-#include "simulation/simulation_settings.hpp"
-#include "simulation/world.hpp"
 
 namespace fast_edi {
 

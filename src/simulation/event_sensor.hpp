@@ -8,8 +8,8 @@
 #include <opencv2/core.hpp>
 
 #include "fast_edi/base/types.hpp"
-#include "simulation/random.hpp"
-#include "simulation/simulation_settings.hpp"
+#include "scenes/random.hpp"
+#include "scenes/simulation_settings.hpp"
 
 namespace fast_edi {
 

@@ -6,8 +6,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "simulation/random.hpp"
-#include "simulation/simulation_settings.hpp"
+#include "scenes/random.hpp"
+#include "scenes/simulation_settings.hpp"
 
 namespace fast_edi {
 

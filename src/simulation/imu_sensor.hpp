@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "simulation/random.hpp"
-#include "simulation/room_trajectory.hpp"
+#include "scenes/random.hpp"
+#include "scenes/room_trajectory.hpp"
 
 namespace fast_edi {
 

@@ -10,7 +10,7 @@
 
 #include "fast_edi/base/types.hpp"
 #include "fast_edi/events/event_mapping.hpp"
-#include "simulation/simulation_settings.hpp"
+#include "scenes/simulation_settings.hpp"
 
 namespace fast_edi {
 

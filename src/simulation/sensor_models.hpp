@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/simulation_settings.hpp"
+#include "scenes/simulation_settings.hpp"
 
 namespace fast_edi {
 

@@ -10,9 +10,9 @@
 
 #include "fast_edi/messages/image_pixels.hpp"
 #include "fast_edi/messages/message_conversion.hpp"
+#include "fast_edi/messages/steady_time.hpp"
 #include "fast_edi/tags/tag_drawing.hpp"
 #include "node/parameter_loading.hpp"
-#include "node/steady_time.hpp"
 #include "tag_node/tag_messages.hpp"
 
 namespace fast_edi {

@@ -17,7 +17,7 @@
 #include "fast_edi/bags/bag_writer.hpp"
 #include "fast_edi/bags/message_source.hpp"
 #include "fast_edi/bags/open_messages.hpp"
-#include "fast_edi/messages/topic_names.hpp"
+#include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/recording/aedat4_writer.hpp"
 #include "fast_edi/recording/open_recording.hpp"
 #include "fast_edi/recording/recording_error.hpp"

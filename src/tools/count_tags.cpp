@@ -23,10 +23,10 @@
 #include "fast_edi/bags/bag_pipeline.hpp"
 #include "fast_edi/bags/message_source.hpp"
 #include "fast_edi/bags/open_messages.hpp"
+#include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/messages/image_pixels.hpp"
 #include "fast_edi/messages/message_conversion.hpp"
-#include "fast_edi/messages/topic_names.hpp"
 #include "fast_edi/tags/tag_detector.hpp"
 #include "progress_bar.hpp"
 

@@ -17,8 +17,8 @@
 #include "fast_edi/bags/bag_writer.hpp"
 #include "fast_edi/bags/message_source.hpp"
 #include "fast_edi/bags/open_messages.hpp"
+#include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/messages/topic_names.hpp"
 #include "film/film_writer.hpp"
 #include "progress_bar.hpp"
 

@@ -16,8 +16,8 @@
 #include "command_line.hpp"
 #include "fast_edi/bags/bag_error.hpp"
 #include "fast_edi/bags/bag_reader.hpp"
+#include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/messages/topic_names.hpp"
 
 namespace {
 

@@ -24,15 +24,15 @@
 
 #include "command_line.hpp"
 #include "evaluation/comparison_sheet.hpp"
-#include "evaluation/image_metrics.hpp"
 #include "fast_edi/bags/bag_deserialise.hpp"
 #include "fast_edi/bags/bag_pipeline.hpp"
 #include "fast_edi/bags/bag_reader.hpp"
+#include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/messages/event_array.hpp"
 #include "fast_edi/messages/image_pixels.hpp"
-#include "fast_edi/messages/topic_names.hpp"
 #include "fast_edi/tags/tag_detector.hpp"
+#include "measures/image_metrics.hpp"
 #include "node/comparison_view.hpp"
 
 namespace fast_edi {

@@ -17,11 +17,11 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "command_line.hpp"
-#include "evaluation/trajectory_error.hpp"
-#include "evaluation/trajectory_plot.hpp"
 #include "fast_edi/bags/bag_deserialise.hpp"
 #include "fast_edi/bags/bag_error.hpp"
 #include "fast_edi/bags/bag_reader.hpp"
+#include "trajectory/trajectory_error.hpp"
+#include "trajectory/trajectory_plot.hpp"
 
 namespace {
 

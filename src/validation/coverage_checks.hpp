@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "validation/finding.hpp"
-#include "validation/recording_survey.hpp"
+#include "survey/finding.hpp"
+#include "survey/recording_survey.hpp"
 
 namespace fast_edi {
 

@@ -21,8 +21,8 @@
 #include <optional>
 #include <vector>
 
-#include "validation/event_statistics.hpp"
-#include "validation/finding.hpp"
+#include "survey/event_statistics.hpp"
+#include "survey/finding.hpp"
 
 namespace fast_edi {
 

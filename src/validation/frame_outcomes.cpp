@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "validation/finding.hpp"
+#include "survey/finding.hpp"
 
 namespace fast_edi {
 namespace {

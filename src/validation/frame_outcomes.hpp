@@ -7,7 +7,7 @@
 
 #include "fast_edi/base/frame_sink.hpp"
 #include "fast_edi/pipeline/deblurrer.hpp"
-#include "validation/frame_log.hpp"
+#include "survey/frame_log.hpp"
 
 namespace fast_edi {
 

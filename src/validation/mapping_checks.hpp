@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "fast_edi/events/event_mapping.hpp"
-#include "validation/finding.hpp"
-#include "validation/recording_survey.hpp"
-#include "validation/timing_estimate.hpp"
+#include "survey/finding.hpp"
+#include "survey/recording_survey.hpp"
+#include "survey/timing_estimate.hpp"
 
 namespace fast_edi {
 

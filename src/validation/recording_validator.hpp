@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "survey/finding.hpp"
+#include "survey/recording_survey.hpp"
+#include "survey/timing_estimate.hpp"
+#include "survey/timing_sample.hpp"
 #include "validation/coverage_checks.hpp"
-#include "validation/finding.hpp"
 #include "validation/frame_outcomes.hpp"
-#include "validation/recording_survey.hpp"
-#include "validation/timing_estimate.hpp"
-#include "validation/timing_sample.hpp"
 
 namespace fast_edi {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "validation/recording_survey.hpp"
-#include "validation/timing_sample.hpp"
+#include "survey/recording_survey.hpp"
+#include "survey/timing_sample.hpp"
 
 namespace fast_edi {
 

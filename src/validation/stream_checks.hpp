@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "validation/finding.hpp"
-#include "validation/recording_survey.hpp"
+#include "survey/finding.hpp"
+#include "survey/recording_survey.hpp"
 
 namespace fast_edi {
 

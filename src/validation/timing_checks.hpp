@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "survey/finding.hpp"
+#include "survey/recording_survey.hpp"
+#include "survey/timing_estimate.hpp"
 #include "validation/coverage_checks.hpp"
-#include "validation/finding.hpp"
-#include "validation/recording_survey.hpp"
-#include "validation/timing_estimate.hpp"
 
 namespace fast_edi {
 

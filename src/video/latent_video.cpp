@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "fast_edi/exposure/stamp_limits.hpp"
-#include "fast_edi/video/latent_instants.hpp"
+#include "fast_edi/latent/latent_instants.hpp"
 
 namespace fast_edi {
 

@@ -9,10 +9,10 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "evaluation/image_metrics.hpp"
 #include "evaluation/shaken_poster.hpp"
 #include "fast_edi/integral/double_integral.hpp"
 #include "fast_edi/pipeline/deblurrer.hpp"
+#include "measures/image_metrics.hpp"
 #include "simulation/davis_simulator.hpp"
 #include "support/event_generators.hpp"
 #include "support/pipeline_input.hpp"

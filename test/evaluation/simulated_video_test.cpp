@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include "evaluation/image_metrics.hpp"
 #include "evaluation/shaken_poster.hpp"
 #include "fast_edi/pipeline/deblurrer.hpp"
+#include "measures/image_metrics.hpp"
 #include "simulation/davis_simulator.hpp"
 #include "support/event_generators.hpp"
 #include "support/pipeline_input.hpp"

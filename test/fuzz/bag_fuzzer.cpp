@@ -15,7 +15,7 @@
 #include "fast_edi/bags/bag_error.hpp"
 #include "fast_edi/bags/bag_reader.hpp"
 #include "fast_edi/bags/bag_writer.hpp"
-#include "fast_edi/messages/topic_names.hpp"
+#include "fast_edi/bags/topic_names.hpp"
 #include "fuzz/fuzzing.hpp"
 #include "support/temporary_directory.hpp"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include "simulation/simulation_settings.hpp"
+#include "scenes/simulation_settings.hpp"
 
 namespace fast_edi {
 namespace {

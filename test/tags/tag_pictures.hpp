@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "fast_edi/tags/tag_detector.hpp"
-#include "simulation/april_tags.hpp"
+#include "scenes/april_tags.hpp"
 
 namespace fast_edi {
 namespace test {

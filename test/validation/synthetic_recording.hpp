@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "fast_edi/events/event_wire.hpp"
-#include "validation/finding.hpp"
-#include "validation/recording_survey.hpp"
+#include "survey/finding.hpp"
+#include "survey/recording_survey.hpp"
 
 namespace fast_edi::testing {
 

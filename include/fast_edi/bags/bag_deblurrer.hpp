@@ -15,9 +15,9 @@
 #include "fast_edi/bags/bag_pipeline.hpp"
 #include "fast_edi/bags/bag_writer.hpp"
 #include "fast_edi/bags/message_source.hpp"
+#include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/base/deblur_counters.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/messages/topic_names.hpp"
 
 namespace fast_edi {
 

@@ -10,9 +10,9 @@
 #include <sensor_msgs/Image.h>
 
 #include "fast_edi/bags/message_source.hpp"
+#include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/messages/message_frame_sink.hpp"
-#include "fast_edi/messages/topic_names.hpp"
 #include "fast_edi/pipeline/deblurrer.hpp"
 
 namespace fast_edi {

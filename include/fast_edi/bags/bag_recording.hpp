@@ -14,7 +14,7 @@
 #include <sensor_msgs/Image.h>
 
 #include "fast_edi/bags/message_source.hpp"
-#include "fast_edi/messages/topic_names.hpp"
+#include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/recording/recording.hpp"
 
 namespace fast_edi {

@@ -29,7 +29,7 @@
 
 #include "fast_edi/base/types.hpp"
 #include "fast_edi/events/event_wire.hpp"
-#include "node/steady_time.hpp"
+#include "fast_edi/messages/steady_time.hpp"
 
 namespace fast_edi {
 

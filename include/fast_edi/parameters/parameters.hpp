@@ -14,7 +14,7 @@
 #include "fast_edi/events/event_mapping.hpp"
 #include "fast_edi/filters/filter_parameters.hpp"
 #include "fast_edi/latent/camera_response.hpp"
-#include "fast_edi/video/latent_instants.hpp"
+#include "fast_edi/latent/latent_instants.hpp"
 
 namespace fast_edi {
 
