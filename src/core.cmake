@@ -10,22 +10,22 @@ endif()
 set(FAST_EDI_CORE_ROOMS base events integral filters latent video parameters exposure calibration pipeline)
 get_filename_component(FAST_EDI_ROOT ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
 
-# Which folders of src/ a library is made of. Headers for other packages lie in include/, those of the
-# package itself beside their sources.
-function(fast_edi_library name)
+# Sources of the folders of src/ that a library is made of.
+function(sources_of_rooms result)
   set(sources "")
   foreach(room IN LISTS ARGN)
     file(GLOB room_sources CONFIGURE_DEPENDS ${FAST_EDI_ROOT}/src/${room}/*.cpp)
     list(APPEND sources ${room_sources})
   endforeach()
-  add_library(${name} ${sources})
-  target_include_directories(${name} PUBLIC
-    $<BUILD_INTERFACE:${FAST_EDI_ROOT}/include>
-    $<BUILD_INTERFACE:${FAST_EDI_ROOT}/src>
-    $<INSTALL_INTERFACE:${CATKIN_GLOBAL_INCLUDE_DESTINATION}>)
+  set(${result} ${sources} PARENT_SCOPE)
 endfunction()
 
-fast_edi_library(fast_edi_core ${FAST_EDI_CORE_ROOMS})
+sources_of_rooms(core_sources ${FAST_EDI_CORE_ROOMS})
+add_library(fast_edi_core ${core_sources})
+target_include_directories(fast_edi_core PUBLIC
+  $<BUILD_INTERFACE:${FAST_EDI_ROOT}/include>
+  $<BUILD_INTERFACE:${FAST_EDI_ROOT}/src>
+  $<INSTALL_INTERFACE:${CATKIN_GLOBAL_INCLUDE_DESTINATION}>)
 target_link_libraries(fast_edi_core Eigen3::Eigen)
 # Minima and maxima keep loops from being vectorised as long as their comparisons may have to raise
 # floating-point exceptions, which nothing here looks at. Results are the same.
