@@ -8,7 +8,7 @@ endif()
 
 # Its folders, in the order in which each may use those before it.
 set(FAST_EDI_CORE_ROOMS base events integral filters latent video parameters exposure calibration pipeline)
-get_filename_component(FAST_EDI_ROOT ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
+set(FAST_EDI_ROOT ${CMAKE_CURRENT_LIST_DIR}/..)
 
 # Sources of the folders of src/ that a library is made of.
 function(sources_of_rooms result)
