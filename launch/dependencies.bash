@@ -17,7 +17,7 @@ FAST_EDI_DEBIAN_BUILD=(
   libdynamic-reconfigure-config-init-mutex-dev python3-dynamic-reconfigure libdiagnostic-updater-dev
   libgeometry-msgs-dev libnav-msgs-dev
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
-  libvisualization-msgs-dev libapriltag-dev libbz2-dev liblz4-dev libzstd-dev libtinyxml2-dev
+  libvisualization-msgs-dev libapriltag-dev libbz2-dev liblz4-dev libzstd-dev libtinyxml2-dev libsqlite3-dev
   libdlib-dev libblas-dev liblapack-dev libsvm-dev
 )
 FAST_EDI_DEBIAN_RUN=(
@@ -40,7 +40,7 @@ FAST_EDI_NOETIC_BUILD=(
   ros-noetic-geometry-msgs ros-noetic-nav-msgs
   ros-noetic-pluginlib ros-noetic-sensor-msgs ros-noetic-std-msgs ros-noetic-visualization-msgs ros-noetic-apriltag
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
-  libbz2-dev liblz4-dev libzstd-dev libtinyxml2-dev libdlib-dev libblas-dev liblapack-dev libsvm-dev
+  libbz2-dev liblz4-dev libzstd-dev libtinyxml2-dev libsqlite3-dev libdlib-dev libblas-dev liblapack-dev libsvm-dev
 )
 FAST_EDI_NOETIC_RUN=(
   ros-noetic-roslaunch ros-noetic-rostopic ros-noetic-rosbash ros-noetic-diagnostic-msgs

@@ -15,8 +15,9 @@ std::unique_ptr<MessageSource> openMessages(const std::string& path, std::int64_
   if (!recording) {
     throw RecordingError(
         path +
-        " is no bag, nor another recording that can be read: it begins neither with \"#ROSBAG "
-        "V2.0\" (rosbag) nor with \"#!AER-DAT4.0\" (AEDAT4)");
+        " is no bag, nor another recording that can be read: expected \"#ROSBAG V2.0\" (rosbag) or "
+        "\"#!AER-DAT4.0\" (AEDAT4) at its begin, or a rosbag2 (ROS 2): a folder with *.db3 or "
+        "*.mcap, or one such file");
   }
   return std::make_unique<RecordingMessages>(std::move(recording), array_ns);
 }

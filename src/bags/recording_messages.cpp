@@ -38,7 +38,12 @@ ros::Time rosTime(std::int64_t t_ns) {
 std::string topicName(const std::string& name) {
   std::string topic;
   for (const char c : name) {
-    topic += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+    const bool keep = std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                      (c == '/' && !topic.empty() && topic.back() != '/');
+    topic += keep ? c : '_';
+  }
+  while (!topic.empty() && topic.back() == '/') {
+    topic.pop_back();
   }
   return topic.empty() || std::isalpha(static_cast<unsigned char>(topic.front())) == 0
              ? "camera_" + topic
@@ -205,6 +210,10 @@ void RecordingMessages::add(const RecordingItem& item) {
 
 void RecordingMessages::addEvents(Output& output, const RecordedEvents& events,
                                   std::int64_t record_ns) {
+  if (events.lost_arrays > 0) {
+    sendArray(output, record_ns);
+    output.sequence += events.lost_arrays;  // the pipeline sees the gap
+  }
   const Event* const end = events.data + events.count;
   for (const Event* begin = events.data; begin != end;) {
     if (output.records.empty()) {

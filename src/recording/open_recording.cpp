@@ -1,6 +1,6 @@
 #include "fast_edi/recording/open_recording.hpp"
 
-#include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <string_view>
@@ -9,6 +9,8 @@
 #include "fast_edi/recording/aedat3_reader.hpp"
 #include "fast_edi/recording/aedat4_reader.hpp"
 #include "fast_edi/recording/byte_source.hpp"
+#include "fast_edi/recording/rosbag2_reader.hpp"
+#include "recording/rosbag2_files.hpp"
 
 namespace fast_edi {
 namespace {
@@ -17,6 +19,9 @@ constexpr std::string_view kRosbagMagic = "#ROSBAG";
 constexpr std::string_view kAedat4Magic = "#!AER-DAT4";
 constexpr std::string_view kAedat2Magic = "#!AER-DAT2";
 constexpr std::string_view kAedat3Magic = "#!AER-DAT3.1";
+/// SQLite, MCAP, either compressed by ZSTD, and metadata.yaml.
+constexpr std::array<std::string_view, 4> kRosbag2Magics = {
+    "SQLite format 3", "\x89MCAP0\r\n", "\x28\xB5\x2F\xFD", "rosbag2_bagfile_information:"};
 
 bool beginsWith(const FileSource& file, std::string_view magic) {
   std::vector<std::uint8_t> scratch;
@@ -29,7 +34,7 @@ bool beginsWith(const FileSource& file, std::string_view magic) {
 RecordingFormat formatOf(const std::string& path) {
   std::error_code ignored;  // FileSource says what is wrong
   if (std::filesystem::is_directory(path, ignored)) {
-    return RecordingFormat::kUnknown;
+    return isRosbag2Folder(path) ? RecordingFormat::kRosbag2 : RecordingFormat::kUnknown;
   }
   const FileSource file(path);
   if (beginsWith(file, kRosbagMagic)) {
@@ -40,6 +45,11 @@ RecordingFormat formatOf(const std::string& path) {
   }
   if (beginsWith(file, kAedat3Magic)) {
     return RecordingFormat::kAedat3;
+  }
+  for (const std::string_view magic : kRosbag2Magics) {
+    if (beginsWith(file, magic)) {
+      return RecordingFormat::kRosbag2;
+    }
   }
   return beginsWith(file, kAedat4Magic) ? RecordingFormat::kAedat4 : RecordingFormat::kUnknown;
 }
@@ -52,6 +62,8 @@ std::unique_ptr<Recording> openRecording(const std::string& path) {
       return std::make_unique<Aedat2Reader>(path);
     case RecordingFormat::kAedat3:
       return std::make_unique<Aedat3Reader>(path);
+    case RecordingFormat::kRosbag2:
+      return std::make_unique<Rosbag2Reader>(path);
     case RecordingFormat::kRosbag:
     case RecordingFormat::kUnknown:
       break;

@@ -76,7 +76,7 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
       "Usage: convert_recording IN OUT.bag       what davis_ros_driver would have recorded\n"
       "       convert_recording IN OUT.aedat4    for iniVation's DV\n"
       "       convert_recording IN FOLDER        frames as PNG, and frames.csv with their times\n\n"
-      "IN is a rosbag or AEDAT4, told by its content.\n"
+      "IN is a rosbag, AEDAT4 or rosbag2 (ROS 2), told by its content.\n"
       "Bags have /dvs/events, /dvs/image_raw stamped in the middle of the exposure, the\n"
       "exposure's length on /dvs/exposure behind each frame, and /dvs/imu.\n",
       "0 done; 1 failed, no output; 2 the input was cut short or damaged: all of it that could be\n"

@@ -9,9 +9,9 @@
 
 namespace fast_edi {
 
-enum class RecordingFormat { kUnknown, kRosbag, kAedat4, kAedat2, kAedat3 };
+enum class RecordingFormat { kUnknown, kRosbag, kAedat4, kAedat2, kAedat3, kRosbag2 };
 
-/// By the first bytes of the file.
+/// By the first bytes of the file; a folder by the files in it.
 /// \throws RecordingError when \p path cannot be read
 RecordingFormat formatOf(const std::string& path);
 

@@ -38,6 +38,8 @@ struct RecordedStream {
 struct RecordedEvents {
   const Event* data = nullptr;
   std::size_t count = 0;
+  /// Arrays or packets right before these that the recorder did not get, as far as it tells.
+  std::uint32_t lost_arrays = 0;
 };
 
 /// A frame; rows without padding.
