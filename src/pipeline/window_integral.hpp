@@ -1,0 +1,66 @@
+/// \file
+/// The double integral of each frame and what is kept for it while events come: the predicted
+/// window, gains and event counts of all pixels. Follows the event lists through changes of size
+/// and flushes.
+///
+/// Per-pixel memory is taken only once a frame of the sensor's size has come, so that a nonsensical
+/// size in an event array costs nothing.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "fast_edi/base/types.hpp"
+#include "fast_edi/events/event_counts.hpp"
+#include "fast_edi/events/event_stream.hpp"
+#include "fast_edi/integral/double_integral.hpp"
+#include "fast_edi/parameters/parameters.hpp"
+
+namespace fast_edi {
+
+class WindowIntegral {
+ public:
+  /// Makes the integral fit the lists.
+  /// \param may_allocate whether per-pixel memory may be taken
+  /// \return false while it cannot be used
+  /// \pre events.lists() is not null
+  bool prepare(EventStream& events, const DeblurParameters& parameters, bool may_allocate);
+  /// Takes over thresholds, weighting and level model.
+  void adopt(const DeblurParameters& parameters);
+  void forgetPrediction() { predicted_.reset(); }
+
+  // All of them need \pre prepare() was true.
+
+  /// Names the next window, in event time. Running sums stay while it is near the one named before.
+  void predictWindow(const ExposureInterval& window, std::int64_t reference_ns);
+  /// Folds in the events that have come.
+  /// \param counts whether events are counted, too
+  void accumulate(const PixelEventLists& lists, bool counts);
+  /// Gains and, if \p counts, event counts of a window, in event time.
+  CloseReport integrate(const PixelEventLists& lists, const ExposureInterval& window,
+                        std::int64_t reference_ns, bool counts);
+
+  /// Of the last window; filters work in place.
+  std::vector<float>& gains() { return gains_; }
+  const EventCounts& counts() const { return *counts_; }
+  std::size_t memoryBytes() const;
+
+ private:
+  struct Prediction {
+    ExposureInterval window;
+    std::int64_t reference_ns = 0;
+  };
+  static bool areNear(const Prediction& a, const Prediction& b);
+
+  std::unique_ptr<DoubleIntegral> integral_;
+  SensorSize size_;
+  std::uint64_t generation_ = 0;  ///< of the lists
+  std::vector<float> gains_;
+  std::optional<EventCounts> counts_;  ///< for the filters alone
+  std::optional<Prediction> predicted_;
+};
+
+}  // namespace fast_edi

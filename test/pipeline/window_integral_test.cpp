@@ -1,0 +1,122 @@
+#include "pipeline/window_integral.hpp"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/event_generators.hpp"
+#include "support/reference_double_integral.hpp"
+
+namespace fast_edi {
+namespace {
+
+constexpr std::int64_t kMs = kNanosecondsPerMillisecond;
+constexpr SensorSize kSize{8, 6};
+constexpr ExposureInterval kWindow{10 * kMs, 30 * kMs};
+constexpr std::int64_t kMid = 20 * kMs;
+
+class WindowIntegralTest : public ::testing::Test {
+ protected:
+  WindowIntegralTest() {
+    parameters.thresholds = {0.3, 0.25};
+    parameters.filter.enabled = false;
+  }
+
+  void take(SensorSize size, std::uint64_t seed) {
+    list = testing::makeEvents(testing::EventScene::kUniform, {size, 2000, 0, 40 * kMs, seed});
+    events.take(testing::wireView(testing::toWire(list)), size, {});
+  }
+  void expectReference(SensorSize size) {
+    const auto expected = testing::referenceDoubleIntegral(size, list, parameters.thresholds,
+                                                           parameters.weighting, kWindow, kMid);
+    ASSERT_EQ(integral.gains().size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      ASSERT_NEAR(integral.gains()[i], 1.0 / expected[i], 1e-4 / expected[i]) << "pixel " << i;
+    }
+  }
+
+  DeblurParameters parameters;
+  DeblurCounters counters;
+  EventStream events{{}, counters, [](StreamBreak, std::int64_t) {}};
+  WindowIntegral integral;
+  std::vector<Event> list;
+};
+
+TEST_F(WindowIntegralTest, TakesNoMemoryBeforeItMay) {
+  take(kSize, 1);
+  EXPECT_FALSE(integral.prepare(events, parameters, false));
+  EXPECT_EQ(integral.memoryBytes(), 0u);
+  EXPECT_TRUE(integral.prepare(events, parameters, true));
+  EXPECT_GT(integral.memoryBytes(), 0u);
+  EXPECT_TRUE(integral.prepare(events, parameters, false));
+}
+
+TEST_F(WindowIntegralTest, GivesTheGainsOfTheReferencePredictedOrNot) {
+  take(kSize, 1);
+  ASSERT_TRUE(integral.prepare(events, parameters, true));
+  EXPECT_EQ(integral.integrate(*events.lists(), kWindow, kMid, false).kind, CloseKind::kSurprise);
+  expectReference(kSize);
+  const std::vector<float> gains = integral.gains();
+  integral.predictWindow(kWindow, kMid);
+  integral.accumulate(*events.lists(), true);
+  const CloseReport report = integral.integrate(*events.lists(), kWindow, kMid, true);
+  EXPECT_EQ(report.kind, CloseKind::kFollowed);
+  EXPECT_EQ(integral.gains(), gains);
+  std::uint64_t counted = 0;
+  for (std::size_t i = 0; i < kSize.pixelCount(); ++i) {
+    counted += integral.counts().on(i) + integral.counts().off(i);
+  }
+  EXPECT_EQ(counted, report.events);
+}
+
+TEST_F(WindowIntegralTest, APredictionNearTheOneBeforeKeepsTheRunningSums) {
+  take(kSize, 1);
+  ASSERT_TRUE(integral.prepare(events, parameters, true));
+  integral.predictWindow(kWindow, kMid);
+  integral.accumulate(*events.lists(), false);
+  integral.predictWindow({kWindow.start_ns + 1000, kWindow.end_ns + 1000}, kMid + 1000);
+  EXPECT_EQ(integral.integrate(*events.lists(), kWindow, kMid, false).kind, CloseKind::kFollowed);
+}
+
+TEST_F(WindowIntegralTest, FollowsTheListsThroughAChangeOfSize) {
+  take(kSize, 1);
+  ASSERT_TRUE(integral.prepare(events, parameters, true));
+  integral.integrate(*events.lists(), kWindow, kMid, true);
+  const SensorSize larger{12, 10};
+  take(larger, 2);
+  EXPECT_FALSE(integral.prepare(events, parameters, false));
+  ASSERT_TRUE(integral.prepare(events, parameters, true));
+  integral.integrate(*events.lists(), kWindow, kMid, true);
+  expectReference(larger);
+}
+
+TEST_F(WindowIntegralTest, StartsAnewAfterTheListsWereEmptied) {
+  take(kSize, 1);
+  ASSERT_TRUE(integral.prepare(events, parameters, true));
+  integral.predictWindow(kWindow, kMid);
+  integral.accumulate(*events.lists(), true);
+  events.restart();
+  take(kSize, 3);
+  ASSERT_TRUE(integral.prepare(events, parameters, false));
+  integral.integrate(*events.lists(), kWindow, kMid, true);
+  expectReference(kSize);
+}
+
+TEST_F(WindowIntegralTest, AdoptsThresholdsAndWeighting) {
+  take(kSize, 1);
+  ASSERT_TRUE(integral.prepare(events, parameters, true));
+  integral.predictWindow(kWindow, kMid);
+  integral.accumulate(*events.lists(), true);
+  parameters.thresholds = {0.2, 0.4};
+  integral.adopt(parameters);
+  integral.integrate(*events.lists(), kWindow, kMid, true);
+  expectReference(kSize);
+  parameters.weighting = Weighting::kCounter;
+  integral.adopt(parameters);
+  ASSERT_TRUE(integral.prepare(events, parameters, true));
+  integral.integrate(*events.lists(), kWindow, kMid, true);
+  expectReference(kSize);
+}
+
+}  // namespace
+}  // namespace fast_edi
