@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <ros/console.h>
+#include <ros/master.h>
 #include <ros/transport_hints.h>
 
 #include "fast_edi/base/number_text.hpp"
@@ -31,7 +32,8 @@ constexpr std::uint32_t kLatentQueue = 400;
 /// A fraction of the shortest sensible close timeout.
 const ros::WallDuration kAdvancePeriod(0.004);
 const ros::WallDuration kReportPeriod(1.0);
-constexpr std::int64_t kWarningInterval_ns = 10 * kNanosecondsPerSecond;
+/// Of what has to wait for the ROS master.
+const ros::WallDuration kRetryPeriod(0.5);
 /// One part in so many of `max_buffered_events` is for nothing but arrays that wait for their
 /// callback; more of it while the pipeline leaves more.
 constexpr std::size_t kWaitingShare = 4;
@@ -51,35 +53,42 @@ std::uint32_t latentQueueFor(const LatentSampling& latent) {
 
 DeblurNode::DeblurNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh,
                        const std::string& name)
+    : DeblurNode(nh, private_nh, name, NotStarted{}) {
+  start();
+}
+
+DeblurNode::DeblurNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh,
+                       const std::string& name, NotStarted)
     : nh_(nh),
       private_nh_(private_nh),
       name_(name),
       topics_{nh_.resolveName("events"), nh_.resolveName("image_raw"), nh_.resolveName("exposure"),
               nh_.resolveName("bias_updates")},
-      diagnostics_(topics_) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    updater_.emplace(nh_, private_nh_, name_);
-    updater_->setHardwareID("none");
-    updater_->add("deblurring", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
-      diagnostics_.fill(close_latency_, output_latency_, status);
-    });
-    configure();
-    if (deblurrer_) {
-      advertise();
-      if (!parameters_.ros.lazy) {
-        inputs_ = subscribe();
-      }
-    }
-    report_timer_ =
-        nh_.createSteadyTimer(kReportPeriod, [this](const ros::SteadyTimerEvent&) { report(); });
-  }
+      diagnostics_(topics_),
+      warnings_(name) {}
+
+void DeblurNode::start() {
+  updater_.emplace(nh_, private_nh_, name_);
+  updater_->setHardwareID("none");
+  updater_->add("deblurring", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    diagnostics_.fill(close_latency_, output_latency_, status);
+  });
+  configure();
   if (deblurrer_) {
+    advertise();
     reconfigure_server_ = std::make_unique<ReconfigureServer>(
         side_thread_.handle(private_nh_), live_->values(),
         [this](const LiveParameters::Values& wanted) { return reconfigure(wanted); });
+    if (!parameters_.ros.lazy) {
+      inputs_ = makeInputs();
+    }
+    retry_timer_ = side_thread_.handle(nh_).createSteadyTimer(
+        kRetryPeriod, [this](const ros::SteadyTimerEvent&) { updateInputs(); });
+    side_thread_.post([this] { updateInputs(); });
     side_thread_.start();
   }
+  report_timer_ =
+      nh_.createSteadyTimer(kReportPeriod, [this](const ros::SteadyTimerEvent&) { report(); });
 }
 
 DeblurNode::~DeblurNode() {
@@ -91,6 +100,7 @@ DeblurNode::~DeblurNode() {
     const std::lock_guard<std::mutex> lock(mutex_);
     ended = std::move(inputs_);
   }
+  retry_timer_.stop();
   ended.reset();
   report_timer_.stop();
   deblurred_publisher_.shutdown();
@@ -155,30 +165,73 @@ bool DeblurNode::isWanted() const {
          (parameters_.deblur.latent.isOn() && latent_publisher_.getNumSubscribers() > 0);
 }
 
-std::unique_ptr<DeblurNode::Inputs> DeblurNode::subscribe() {
-  const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
+/// \pre mutex_ is held, or no callback can come yet
+std::unique_ptr<DeblurNode::Inputs> DeblurNode::makeInputs() {
   auto inputs = std::make_unique<Inputs>();
-  inputs->camera_info =
-      nh_.subscribe("camera_info", kLatestWins, &DeblurNode::receiveCameraInfo, this, no_delay);
-  // With explicit thresholds too: they may be given back to the biases while we listen.
-  inputs->bias_updates =
-      nh_.subscribe("bias_updates", kLatestWins, &DeblurNode::receiveBiasUpdate, this, no_delay);
-  inputs->exposure =
-      nh_.subscribe("exposure", kExposureQueue, &DeblurNode::receiveExposure, this, no_delay);
   inputs->events = std::make_unique<EventSubscription>(
       nh_, "events", WaitingArrays::Limits{kEventQueue, waitingLimit()},
       [this](const WireEvents& events, SensorSize size, std::uint32_t sequence,
              std::int64_t arrived_ns) { receiveEvents(events, size, sequence, arrived_ns); },
-      [this](std::size_t lost) { receiveLoss(lost); });
-  inputs->image = image_transport::ImageTransport(nh_).subscribe(
-      "image_raw", kImageQueue, &DeblurNode::receiveImage, this,
-      image_transport::TransportHints("raw", no_delay, private_nh_));
+      [this](std::size_t lost) { receiveLoss(lost); },
+      [this] { side_thread_.post([this] { updateInputs(); }); });
   totals_.listening_since_ns = steadyNow();
   totals_.last_frame_ns = 0;
   totals_.last_events_ns = 0;
-  inputs->advance_timer = nh_.createSteadyTimer(
-      kAdvancePeriod, [this](const ros::SteadyTimerEvent&) { advanceClock(); });
   return inputs;
+}
+
+/// One by one, so that what cannot be subscribed to keeps none of the others.
+void DeblurNode::subscribe(Inputs& inputs) {
+  const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
+  if (!inputs.camera_info) {
+    inputs.camera_info =
+        nh_.subscribe("camera_info", kLatestWins, &DeblurNode::receiveCameraInfo, this, no_delay);
+  }
+  if (!inputs.bias_updates) {
+    // With explicit thresholds too: they may be given back to the biases while we listen.
+    inputs.bias_updates =
+        nh_.subscribe("bias_updates", kLatestWins, &DeblurNode::receiveBiasUpdate, this, no_delay);
+  }
+  if (!inputs.exposure) {
+    inputs.exposure =
+        nh_.subscribe("exposure", kExposureQueue, &DeblurNode::receiveExposure, this, no_delay);
+  }
+  inputs.events->update();
+  if (!inputs.image) {
+    inputs.image = image_transport::ImageTransport(nh_).subscribe(
+        "image_raw", kImageQueue, &DeblurNode::receiveImage, this,
+        image_transport::TransportHints("raw", no_delay, private_nh_));
+  }
+  inputs.advance_timer = nh_.createSteadyTimer(
+      kAdvancePeriod, [this](const ros::SteadyTimerEvent&) { advanceClock(); });
+  inputs.subscribed = true;
+}
+
+void DeblurNode::updateInputs() {
+  if (!inputs_) {
+    return;
+  }
+  // Without the master nothing is given up either: it could not be had back.
+  const bool needs_master = !inputs_->subscribed || inputs_->events->needsUpdate();
+  const bool reachable = !needs_master || ros::master::check();
+  std::string error;
+  if (reachable) {
+    try {
+      if (!inputs_->subscribed) {
+        subscribe(*inputs_);
+      } else {
+        inputs_->events->update();
+      }
+    } catch (const std::exception& exception) {
+      error = exception.what();
+    }
+  }
+  guarded([&] {
+    totals_.master_missing = !reachable;
+    if (!error.empty()) {
+      noteInternalError(error);
+    }
+  });
 }
 
 void DeblurNode::subscribersChanged() {
@@ -189,13 +242,14 @@ void DeblurNode::subscribersChanged() {
     }
     const bool wanted = isWanted();
     if (wanted && !inputs_) {
-      inputs_ = subscribe();
+      inputs_ = makeInputs();
     } else if (!wanted && inputs_) {
       ended = std::move(inputs_);
       deblurrer_->pause();
       comparison_.clear();
     }
   });
+  updateInputs();
 }
 
 template <typename Work>
@@ -206,13 +260,17 @@ void DeblurNode::guarded(Work&& work) {
   try {
     work();
   } catch (const std::exception& error) {
-    ++totals_.internal_errors;
-    totals_.internal_error = error.what();
-    warnThrottled("internal error", totals_.internal_error, callback_start_ns_);
+    noteInternalError(error.what());
     if (deblurrer_) {
       deblurrer_->pause();
     }
   }
+}
+
+void DeblurNode::noteInternalError(const std::string& error) {
+  ++totals_.internal_errors;
+  totals_.internal_error = error;
+  warnings_.warn("internal error", error, callback_start_ns_);
 }
 
 template <typename Work>
@@ -244,7 +302,7 @@ void DeblurNode::receiveEvents(const WireEvents& events, SensorSize size, std::u
 
 /// What buffered events leave of `max_buffered_events` to those that wait.
 std::size_t DeblurNode::waitingLimit() const {
-  return parameters_.deblur.max_buffered_events - deblurrer_->status().buffered_events;
+  return parameters_.deblur.max_buffered_events - deblurrer_->bufferedEvents();
 }
 
 void DeblurNode::receiveLoss(std::size_t events) {
@@ -354,7 +412,7 @@ LiveParameters::Values DeblurNode::reconfigure(const LiveParameters::Values& wan
       ++totals_.values_refused;
       totals_.value_refusal = refusal;
       ROS_WARN_STREAM(name_ << ": old value kept: " << refusal);
-      last_warning_ns_["values"] = callback_start_ns_;  // the report need not say it again
+      warnings_.note("values", callback_start_ns_);  // the report need not say it again
     }
     ++totals_.reconfigurations;
     try {
@@ -367,13 +425,13 @@ LiveParameters::Values DeblurNode::reconfigure(const LiveParameters::Values& wan
     in_force = live_->values();
     const std::uint32_t latent_queue = latentQueueFor(parameters_.deblur.latent);
     if (latent_queue > latent_queue_) {
-      warnThrottled("latent queue",
-                    "the queue of " + latent_publisher_.getTopic() + " holds " +
-                        std::to_string(latent_queue_) + " images, expected " +
-                        std::to_string(latent_queue) +
-                        " for this many latent images: slow subscribers may lose some; set"
-                        " latent_images before the node starts",
-                    callback_start_ns_);
+      warnings_.warn("latent queue",
+                     "the queue of " + latent_publisher_.getTopic() + " holds " +
+                         std::to_string(latent_queue_) + " images, expected " +
+                         std::to_string(latent_queue) +
+                         " for this many latent images: slow subscribers may lose some; set"
+                         " latent_images before the node starts",
+                     callback_start_ns_);
     }
   });
   subscribersChanged();  // those of latent images count only while there are any
@@ -426,8 +484,8 @@ void DeblurNode::publishComparison(const sensor_msgs::Image& image, const Output
         comparison_.draw(*messageFrame(output.input).message, image, window));
   } catch (const std::exception& error) {
     // A picture for people must not disturb the pipeline that it is drawn in the middle of.
-    warnThrottled("comparison", std::string("no comparison picture: ") + error.what(),
-                  callback_start_ns_);
+    warnings_.warn("comparison", std::string("no comparison picture: ") + error.what(),
+                   callback_start_ns_);
   }
 }
 
@@ -449,22 +507,10 @@ void DeblurNode::report() {
   guarded([&] {
     diagnostics_.update(snapshot(callback_start_ns_));
     for (const Complaint& complaint : diagnostics_.complaints()) {
-      warnThrottled(complaint.kind, complaint.text, callback_start_ns_);
+      warnings_.warn(complaint.kind, complaint.text, callback_start_ns_);
     }
     updater_->force_update();
   });
-}
-
-void DeblurNode::warnThrottled(const std::string& kind, const std::string& text,
-                               std::int64_t now_ns) {
-  // Not ROS_WARN_THROTTLE: that one throttles by a line of source, for all nodelets of a manager
-  // together, and by a clock that stands still with a paused bag.
-  const auto last = last_warning_ns_.find(kind);
-  if (last != last_warning_ns_.end() && now_ns - last->second < kWarningInterval_ns) {
-    return;
-  }
-  last_warning_ns_[kind] = now_ns;
-  ROS_WARN_STREAM(name_ << ": " << text);
 }
 
 }  // namespace fast_edi

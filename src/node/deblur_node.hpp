@@ -8,7 +8,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <unordered_map>
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <dynamic_reconfigure/Config.h>
@@ -31,28 +30,34 @@
 #include "node/overload_guard.hpp"
 #include "node/reconfigure_server.hpp"
 #include "node/side_thread.hpp"
+#include "node/throttled_warnings.hpp"
 
 namespace fast_edi {
 
 /// Threads. Callbacks come from the node handles' callback queue. Events, frames and exposures have
 /// to be handled in the order of their arrival, so that queue must call one callback at a time: a
 /// nodelet's getNodeHandle() whatever the number of the manager's worker threads, or ros::spin(). A
-/// queue that calls several at once does no harm beyond that order. Changes of parameters, and
-/// subscribers that come and go, are handled by a SideThread.
+/// queue that calls several at once does no harm beyond that order. Changes of parameters,
+/// subscribers that come and go, and subscribing to the inputs are handled by a SideThread.
 ///
 /// mutex_ guards all members that callbacks use: everything from sink_ on, live_, parameters_
 /// and driver_biases_. Each callback holds it from beginning to end. It is needed even
-/// with a queue as above, which runs already while the constructor is at work, and still while the
-/// destructor is.
+/// with a queue as above, which is still running while the destructor is at work.
+///
+/// Nobody calls the ROS master with mutex_ held, nor in the thread of the inputs: that takes time
+/// and, while there is no master, may not end. Inputs are subscribed to by the SideThread, once the
+/// master can be reached; until then the node works on with what it has.
 ///
 /// Event arrays alone are taken in by roscpp's thread, which never waits for mutex_: see
 /// waiting_arrays.hpp.
 ///
 /// Order of locks: that of ReconfigureServer, mutex_, then any lock inside ROS (publishing,
-/// subscribing, diagnostics) or of WaitingArrays. The SideThread is stopped without mutex_. The
-/// other way round would be to hold mutex_ while waiting for a callback to end, which may be
-/// waiting for mutex_. So what waits for callbacks (ending subscriptions, timers and publishers) is
-/// done without holding it. Suspending the events waits for none: they have no queue in roscpp.
+/// diagnostics) or of EventSubscription, WaitingArrays and SideThread. The SideThread is stopped
+/// without mutex_. The other way round would be to hold mutex_ while waiting for a callback to end,
+/// which may be waiting for mutex_. So what waits for callbacks (ending subscriptions, timers and
+/// publishers) is done without holding it.
+///
+/// Starting. What can fail comes before what calls back; when it fails, the destructor runs.
 ///
 /// Closing. First the SideThread ends, then the inputs and the clock, then the report, then the
 /// publishers, which are never replaced before: at no time can a callback meet a publisher that is
@@ -74,23 +79,33 @@ class DeblurNode {
   const std::string& configurationError() const { return configuration_error_; }
 
  private:
-  /// Input subscriptions and the clock, which come and go together.
+  /// What is received while somebody wants outputs: input subscriptions and the clock, which come
+  /// and go together.
   struct Inputs {
+    SequenceGaps image_gaps;
+    OverloadGuard overload;
+    std::unique_ptr<EventSubscription> events;
+    // Of the SideThread alone:
     ros::SteadyTimer advance_timer;
     image_transport::Subscriber image;
-    SequenceGaps image_gaps;
     ros::Subscriber camera_info;
     ros::Subscriber exposure;
     ros::Subscriber bias_updates;
-    std::unique_ptr<EventSubscription> events;
-    OverloadGuard overload;
+    bool subscribed = false;  ///< to all of them; the events may be suspended
   };
+  struct NotStarted {};
 
+  DeblurNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, const std::string& name,
+             NotStarted);
+  void start();
   void configure();
   void advertise();
   bool isWanted() const;
   void subscribersChanged();
-  std::unique_ptr<Inputs> subscribe();
+  std::unique_ptr<Inputs> makeInputs();
+  /// Subscribes to what is missing, if the master can be reached.
+  void updateInputs();
+  void subscribe(Inputs& inputs);
 
   void receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                      std::int64_t arrived_ns);
@@ -115,7 +130,7 @@ class DeblurNode {
                const OutputFrame& output);
   void publishComparison(const sensor_msgs::Image& image, const OutputFrame& output);
   NodeSnapshot snapshot(std::int64_t now_ns) const;
-  void warnThrottled(const std::string& kind, const std::string& text, std::int64_t now_ns);
+  void noteInternalError(const std::string& error);
 
   /// Runs a callback's work under the mutex.
   template <typename Work>
@@ -145,7 +160,7 @@ class DeblurNode {
   NodeSnapshot totals_;  ///< the part of the snapshot that is counted here
   std::int64_t callback_start_ns_ = 0;
   std::int64_t message_arrived_ns_ = 0;  ///< the message at hand; at most callback_start_ns_
-  std::unordered_map<std::string, std::int64_t> last_warning_ns_;  ///< by kind
+  ThrottledWarnings warnings_;
 
   image_transport::CameraPublisher deblurred_publisher_;
   image_transport::Publisher comparison_publisher_;
@@ -153,7 +168,9 @@ class DeblurNode {
   std::uint32_t latent_queue_ = 0;  ///< of that publisher [images]
   std::optional<diagnostic_updater::Updater> updater_;
   ros::SteadyTimer report_timer_;
-  std::unique_ptr<Inputs> inputs_;                         ///< null while nobody listens
+  ros::SteadyTimer retry_timer_;
+  /// Null while nobody listens; exchanged by the SideThread alone.
+  std::unique_ptr<Inputs> inputs_;
   std::unique_ptr<ReconfigureServer> reconfigure_server_;  ///< none when idle for good
 };
 

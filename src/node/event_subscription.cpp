@@ -1,12 +1,18 @@
 #include "node/event_subscription.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <mutex>
 #include <utility>
+#include <vector>
 
+#include <ros/callback_queue_interface.h>
 #include <ros/subscribe_options.h>
 #include <ros/this_node.h>
 #include <ros/transport_hints.h>
+#include <boost/function.hpp>
 
+#include "fast_edi/messages/event_array.hpp"
 #include "fast_edi/messages/steady_time.hpp"
 
 #ifdef FAST_EDI_HAVE_DVS_MSGS
@@ -16,133 +22,232 @@
 #endif
 
 namespace fast_edi {
+namespace {
+
+/// Calls what is added in the thread that adds it.
+class ImmediateQueue : public ros::CallbackQueueInterface {
+ public:
+  void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t) override {
+    callback->call();
+  }
+  void removeByID(std::uint64_t) override {}
+};
+
+}  // namespace
+
+struct EventSubscription::State : std::enable_shared_from_this<State> {
+  State(ros::CallbackQueueInterface& queue, WaitingArrays::Limits limits, Handler handler_in,
+        WaitingArrays::LossHandler on_loss, std::function<void()> on_change_in)
+      : handler(std::move(handler_in)),
+        on_change(std::move(on_change_in)),
+        waiting(queue, limits, std::move(on_loss)) {}
+
+  Source wanted() const;
+  void receive(const ros::MessageEvent<const EventArray>& event);
+#ifdef FAST_EDI_HAVE_DVS_MSGS
+  void receivePointer(const dvs_msgs::EventArray::ConstPtr& array);
+  void deliverPointer(const dvs_msgs::EventArray& array, std::int64_t arrived_ns);
+#endif
+  void announceHole();
+
+  const Handler handler;
+  const std::function<void()> on_change;
+  ImmediateQueue immediate_queue;
+  WaitingArrays waiting;
+
+  /// Guards what is below. Never held while calling the master, on_change or the handler.
+  mutable std::mutex mutex;
+  bool published_here = false;  ///< by this process
+  bool suspended = false;
+  WaitingArrays::Delivery on_suspended;
+  Source source = Source::kNone;     ///< subscribed to
+  SensorSize last_size;              ///< of the last array off the wire
+  std::uint32_t last_sequence = 0;   ///< same
+  std::vector<std::uint8_t> packed;  ///< memory of the last array that came as a pointer
+};
 
 EventSubscription::EventSubscription(const ros::NodeHandle& nh, const std::string& topic,
                                      WaitingArrays::Limits limits, Handler handler,
-                                     WaitingArrays::LossHandler on_loss)
+                                     WaitingArrays::LossHandler on_loss,
+                                     std::function<void()> on_change)
     : nh_(nh),
       topic_(nh_.resolveName(topic)),
       max_waiting_arrays_(limits.arrays),
-      handler_(std::move(handler)),
-      waiting_(*nh_.getCallbackQueue(), limits, std::move(on_loss)) {
-#ifdef FAST_EDI_HAVE_DVS_MSGS
+      state_(std::make_shared<State>(*nh_.getCallbackQueue(), limits, std::move(handler),
+                                     std::move(on_loss), std::move(on_change))) {
   ros::V_string published_here;
   ros::this_node::getAdvertisedTopics(published_here);
-  if (std::find(published_here.begin(), published_here.end(), topic_) != published_here.end()) {
-    subscribeToPointers();
-    return;
-  }
-#endif
-  subscribeToWire();
+  state_->published_here =
+      std::find(published_here.begin(), published_here.end(), topic_) != published_here.end();
 }
 
 EventSubscription::~EventSubscription() {
-  ros::Subscriber last;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ended_ = true;
-    std::swap(last, subscriber_);
-  }
-  last.shutdown();  // waits, without the mutex that the callback may be waiting for
-  // Then waiting_ waits for a delivery at work.
+  subscriber_.shutdown();  // waits for an array that is just being received
+  state_->waiting.end();   // waits for a delivery at work
+}
+
+void EventSubscription::limitWaiting(std::size_t events) {
+  state_->waiting.limitEvents(events);
 }
 
 bool EventSubscription::suspend(std::function<void()> on_suspended) {
-  ros::Subscriber last;
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (takes_pointers_ || published_here_) {
+    const std::lock_guard<std::mutex> lock(state_->mutex);
+    if (state_->published_here) {
       return false;
     }
-    suspended_ = true;
-    std::swap(last, subscriber_);
+    state_->suspended = true;
+    state_->on_suspended = std::move(on_suspended);
   }
-  last.shutdown();
-  waiting_.add(0, std::move(on_suspended));
+  state_->on_change();
   return true;
 }
 
 void EventSubscription::resume() {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    // An array that was still waiting may have told of a publisher in this process.
-    if (!std::exchange(suspended_, false) || takes_pointers_) {
-      return;
-    }
+    const std::lock_guard<std::mutex> lock(state_->mutex);
+    state_->suspended = false;
   }
-  subscribeToWire();
+  state_->on_change();
+}
+
+bool EventSubscription::needsUpdate() const {
+  const std::lock_guard<std::mutex> lock(state_->mutex);
+  return state_->source != state_->wanted();
 }
 
 bool EventSubscription::takesPointers() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return takes_pointers_;
+  const std::lock_guard<std::mutex> lock(state_->mutex);
+  return state_->source == Source::kPointers;
 }
 
-/// Ends the subscription before. In a callback of that one, this must be the last thing done: the
-/// destructor no longer waits for it then.
-void EventSubscription::replaceBy(ros::Subscriber next, bool takes_pointers) {
+void EventSubscription::update() {
+  Source next = Source::kNone;
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!ended_) {
-      std::swap(next, subscriber_);
-      takes_pointers_ = takes_pointers;
+    const std::lock_guard<std::mutex> lock(state_->mutex);
+    next = state_->wanted();
+    if (next == state_->source) {
+      return;
     }
   }
-  next.shutdown();
+  // The new subscription first: while there is one, another one in this process needs no master.
+  ros::Subscriber before = std::exchange(subscriber_, subscribeTo(next));
+  {
+    const std::lock_guard<std::mutex> lock(state_->mutex);
+    const Source last = std::exchange(state_->source, next);
+    if (last == Source::kWire && next == Source::kPointers) {
+      state_->announceHole();
+    }
+  }
+  before.shutdown();
+  if (next == Source::kNone) {
+    const std::lock_guard<std::mutex> lock(state_->mutex);
+    state_->waiting.add(0, std::move(state_->on_suspended));
+  }
 }
 
-template <typename Array>
-ros::Subscriber EventSubscription::subscribe(
-    const boost::function<void(const ros::MessageEvent<const Array>&)>& callback) {
+template <typename Array, typename Callback>
+ros::Subscriber EventSubscription::subscribe(Callback callback) {
+  using ArrayEvent = ros::MessageEvent<const Array>;
   ros::SubscribeOptions options;
-  options.initByFullCallbackType<const ros::MessageEvent<const Array>&>(
-      topic_, static_cast<std::uint32_t>(max_waiting_arrays_), callback);
-  options.callback_queue = &immediate_queue_;
+  options.initByFullCallbackType<const ArrayEvent&>(
+      topic_, static_cast<std::uint32_t>(max_waiting_arrays_),
+      boost::function<void(const ArrayEvent&)>(callback));
+  options.callback_queue = &state_->immediate_queue;
   options.allow_concurrent_callbacks = true;  // a publisher's thread must not find it busy
   options.transport_hints = ros::TransportHints().tcpNoDelay();
   return nh_.subscribe(options);
 }
 
-void EventSubscription::subscribeToWire() {
-  replaceBy(subscribe<EventArray>(
-                [this](const ros::MessageEvent<const EventArray>& event) { receive(event); }),
-            false);
-}
-
-void EventSubscription::receive(const ros::MessageEvent<const EventArray>& event) {
-  published_here_ = event.getPublisherName() == ros::this_node::getName();
-  waiting_.add(event.getConstMessage()->events().count, [this, event] { handOver(event); });
-}
-
-void EventSubscription::handOver(const ros::MessageEvent<const EventArray>& event) {
+ros::Subscriber EventSubscription::subscribeTo(Source source) {
+  switch (source) {
+    case Source::kWire:
+      return subscribe<EventArray>(
+          [state = state_](const ros::MessageEvent<const EventArray>& event) {
+            state->receive(event);
+          });
+    case Source::kPointers:
 #ifdef FAST_EDI_HAVE_DVS_MSGS
-  if (takesPointers()) {
-    return;  // behind the hole that was announced
+      return subscribe<dvs_msgs::EventArray>(
+          [state = state_](const ros::MessageEvent<const dvs_msgs::EventArray>& event) {
+            state->receivePointer(event.getConstMessage());
+          });
+#endif
+    case Source::kNone:
+      break;
+  }
+  return {};
+}
+
+/// \pre mutex is held
+EventSubscription::Source EventSubscription::State::wanted() const {
+  if (suspended) {
+    return Source::kNone;
+  }
+#ifdef FAST_EDI_HAVE_DVS_MSGS
+  if (published_here) {
+    return Source::kPointers;
   }
 #endif
-  const EventArray& array = *event.getConstMessage();
-  handler_(array.events(), sensorSize(array), array.header.seq, array.decodingSince());
-#ifdef FAST_EDI_HAVE_DVS_MSGS
-  if (event.getPublisherName() == ros::this_node::getName()) {
-    const std::uint32_t beyond_a_hole = array.header.seq + 2;
-    handler_({}, sensorSize(array), beyond_a_hole, 0);
-    subscribeToPointers();
+  return Source::kWire;
+}
+
+void EventSubscription::State::receive(const ros::MessageEvent<const EventArray>& event) {
+  const EventArray::ConstPtr array = event.getConstMessage();
+  // One that never was on the wire arrives now.
+  const std::int64_t arrived_ns =
+      array->decodingSince() != 0 ? array->decodingSince() : steadyNow();
+  bool changes = false;
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (source == Source::kPointers) {
+      return;  // behind the hole that was announced
+    }
+    published_here = event.getPublisherName() == ros::this_node::getName();
+    changes = source != wanted();
+    last_size = sensorSize(*array);
+    last_sequence = array->header.seq;
+    waiting.add(array->events().count, [state = shared_from_this(), array, arrived_ns] {
+      state->handler(array->events(), sensorSize(*array), array->header.seq, arrived_ns);
+    });
   }
-#endif
+  if (changes) {
+    on_change();
+  }
 }
 
 #ifdef FAST_EDI_HAVE_DVS_MSGS
-void EventSubscription::subscribeToPointers() {
-  replaceBy(subscribe<dvs_msgs::EventArray>(
-                [this](const ros::MessageEvent<const dvs_msgs::EventArray>& event) {
-                  const dvs_msgs::EventArray::ConstPtr& array = event.getConstMessage();
-                  waiting_.add(array->events.size(), [this, array, since_ns = steadyNow()] {
-                    handler_(packGeneratedEvents(array->events, records_), sensorSize(*array),
-                             array->header.seq, since_ns);
-                  });
-                }),
-            true);
+void EventSubscription::State::receivePointer(const dvs_msgs::EventArray::ConstPtr& array) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (source != Source::kPointers) {
+    return;  // comes off the wire, too: the subscription is just being replaced
+  }
+  waiting.add(array->events.size(), [state = shared_from_this(), array, arrived_ns = steadyNow()] {
+    state->deliverPointer(*array, arrived_ns);
+  });
+}
+
+void EventSubscription::State::deliverPointer(const dvs_msgs::EventArray& array,
+                                              std::int64_t arrived_ns) {
+  // Memory of its own: another thread may be delivering, too.
+  std::vector<std::uint8_t> records;
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    records.swap(packed);
+  }
+  handler(packGeneratedEvents(array.events, records), sensorSize(array), array.header.seq,
+          arrived_ns);
+  const std::lock_guard<std::mutex> lock(mutex);
+  records.swap(packed);
 }
 #endif
+
+/// \pre mutex is held
+void EventSubscription::State::announceHole() {
+  const std::uint32_t beyond_a_hole = last_sequence + 2;
+  waiting.add(0, [state = shared_from_this(), size = last_size, beyond_a_hole] {
+    state->handler({}, size, beyond_a_hole, steadyNow());
+  });
+}
 
 }  // namespace fast_edi

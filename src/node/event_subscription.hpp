@@ -12,27 +12,24 @@
 /// the topic. A publisher that starts later is noticed by its first array; arrays that get lost
 /// while the subscription is replaced are announced as a hole in the sequence.
 ///
+/// What is to be received may change at any time and in any thread. update() alone does what that
+/// takes, since roscpp's subscribe() calls the master, and while there is none does not return.
+///
 /// Arrays are taken out of roscpp's queue at once, in the thread that received them, and wait for
 /// their callback where their memory is bounded, see waiting_arrays.hpp.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <mutex>
+#include <memory>
 #include <string>
-#include <vector>
 
-#include <ros/callback_queue_interface.h>
 #include <ros/node_handle.h>
 #include <ros/subscriber.h>
-#include <boost/function.hpp>
-#include <boost/shared_ptr.hpp>
 
 #include "fast_edi/base/types.hpp"
 #include "fast_edi/events/event_wire.hpp"
-#include "fast_edi/messages/event_array.hpp"
 #include "node/waiting_arrays.hpp"
 
 namespace fast_edi {
@@ -40,69 +37,59 @@ namespace fast_edi {
 class EventSubscription {
  public:
   /// \param size of the sensor, {0, 0} when what the array says is impossible
-  /// \param arrived_ns when the array arrived, on the clock of steadyNow()
+  /// \param arrived_ns when the array arrived, on the clock of steadyNow(); for a hole that is
+  ///        announced, when it is
   using Handler = std::function<void(const WireEvents& events, SensorSize size,
                                      std::uint32_t sequence, std::int64_t arrived_ns)>;
 
   /// \param limits of the arrays that wait for their callback; older ones are dropped
   /// \param handler called from \p nh's callback queue
   /// \param on_loss the same, with the number of events that were dropped before the next array
+  /// \param on_change called when there is something to do for update(), from any thread, with no
+  ///        lock held
   EventSubscription(const ros::NodeHandle& nh, const std::string& topic,
                     WaitingArrays::Limits limits, Handler handler,
-                    WaitingArrays::LossHandler on_loss);
-  /// Waits for a callback at work to end.
+                    WaitingArrays::LossHandler on_loss, std::function<void()> on_change);
+  /// Waits for a callback at work to end: not to be called from one, nor with a lock held that one
+  /// may want.
   ~EventSubscription();
   EventSubscription(const EventSubscription&) = delete;
   EventSubscription& operator=(const EventSubscription&) = delete;
 
   /// See WaitingArrays.
-  void limitWaiting(std::size_t events) { waiting_.limitEvents(events); }
+  void limitWaiting(std::size_t events);
 
-  /// Receives nothing until resume(), if arrays come from another process. What waits is delivered
-  /// still, then \p on_suspended is called from the callback queue.
+  /// Nothing is to be received until resume(), if arrays come from another process. What waits then
+  /// is delivered still, and \p on_suspended is called from the callback queue after it.
   /// \return false when they come from this one, where nothing has to be received
   bool suspend(std::function<void()> on_suspended);
-  /// Receives again. Nothing unless suspended.
+  /// Arrays are to be received again.
   void resume();
+
+  /// True when there is something to do for update().
+  bool needsUpdate() const;
+  /// Subscribes or unsubscribes, so that what is to be received is. Nothing is received before the
+  /// first call. Calls the master, and waits for it: not to be called with a lock held that a
+  /// callback may want. One call at a time, none while this object is destroyed.
+  void update();
 
   /// True while arrays are taken as pointers to the generated type.
   bool takesPointers() const;
 
  private:
-  /// Calls what is added in the thread that adds it.
-  class ImmediateQueue : public ros::CallbackQueueInterface {
-   public:
-    void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t) override {
-      callback->call();
-    }
-    void removeByID(std::uint64_t) override {}
-  };
+  enum class Source { kNone, kWire, kPointers };
+  struct State;
 
-  template <typename Array>
-  ros::Subscriber subscribe(
-      const boost::function<void(const ros::MessageEvent<const Array>&)>& callback);
-  void receive(const ros::MessageEvent<const EventArray>& event);
-  void handOver(const ros::MessageEvent<const EventArray>& event);
-  void subscribeToWire();
-  void subscribeToPointers();
-  void replaceBy(ros::Subscriber next, bool takes_pointers);
+  template <typename Array, typename Callback>
+  ros::Subscriber subscribe(Callback callback);
+  ros::Subscriber subscribeTo(Source source);
 
   ros::NodeHandle nh_;
-  std::string topic_;
+  const std::string topic_;
   const std::size_t max_waiting_arrays_;
-  Handler handler_;
-  ImmediateQueue immediate_queue_;
-  WaitingArrays waiting_;
-  std::atomic<bool> published_here_{false};  ///< the last array came from this process
-  std::vector<std::uint8_t> records_;        ///< packed events of the array at hand
-
-  /// Guards what is below: a callback may replace the subscription while another thread ends it.
-  /// Held only to read or exchange them, never while calling ROS.
-  mutable std::mutex mutex_;
-  bool ended_ = false;
-  bool suspended_ = false;
-  bool takes_pointers_ = false;
-  ros::Subscriber subscriber_;  ///< to be gone before what is above
+  /// Shared with roscpp's callbacks and with deliveries, so that it outlives all of them.
+  const std::shared_ptr<State> state_;
+  ros::Subscriber subscriber_;  ///< of update() alone
 };
 
 }  // namespace fast_edi

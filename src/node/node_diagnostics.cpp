@@ -168,6 +168,10 @@ void NodeDiagnostics::summarise(DiagnosticStatusWrapper& status) const {
     status.mergeSummary(DiagnosticStatus::WARN, "no event array on " + topics_.events + " for " +
                                                     secondsText(silence(now_.last_events_ns)));
   }
+  if (now_.master_missing) {
+    status.mergeSummary(DiagnosticStatus::ERROR,
+                        "the ROS master cannot be reached: inputs stay as they are");
+  }
   for (const Complaint& complaint : complaints_) {
     status.mergeSummary(DiagnosticStatus::WARN, complaint.text);
   }

@@ -25,7 +25,8 @@ struct InputTopics {
 struct NodeSnapshot {
   std::int64_t time_ns = 0;         ///< steady clock
   std::string configuration_error;  ///< not empty: the node is idle for good
-  bool listening = false;           ///< inputs are subscribed to
+  bool listening = false;           ///< inputs are wanted
+  bool master_missing = false;      ///< so that they cannot be changed
   std::int64_t listening_since_ns = 0;
   std::int64_t last_frame_ns = 0;   ///< arrival on the steady clock; 0 = none since listening
   std::int64_t last_events_ns = 0;  ///< same

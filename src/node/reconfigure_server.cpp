@@ -5,6 +5,7 @@
 
 #include <dynamic_reconfigure/Config.h>
 #include <dynamic_reconfigure/server.h>
+#include <ros/master.h>
 #include <boost/thread/recursive_mutex.hpp>
 
 #include "fast_edi/DeblurConfig.h"
@@ -102,6 +103,9 @@ class ReconfigureServer::Impl {
   void takeOver(const Values& in_force, DeblurConfig& config) {
     assign(in_force, config);
     const Values before = std::exchange(last_, valuesOf(config));
+    if (!ros::master::check()) {
+      return;  // with it the parameter server is gone, and each value would wait for both
+    }
     for (const auto& parameter : DeblurConfig::__getParamDescriptions__()) {
       const std::string& name = parameter->name;
       const auto old = before.find(name);

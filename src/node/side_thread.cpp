@@ -1,10 +1,26 @@
 #include "node/side_thread.hpp"
 
+#include <utility>
+
+#include <boost/make_shared.hpp>
+
 namespace fast_edi {
 namespace {
 
 /// How long stop() may have to wait for an idle thread.
 const ros::WallDuration kLongestWait(0.05);
+
+class Work : public ros::CallbackInterface {
+ public:
+  explicit Work(std::function<void()> work) : work_(std::move(work)) {}
+  CallResult call() override {
+    work_();
+    return Success;
+  }
+
+ private:
+  std::function<void()> work_;
+};
 
 }  // namespace
 
@@ -12,6 +28,10 @@ ros::NodeHandle SideThread::handle(const ros::NodeHandle& nh) {
   ros::NodeHandle own(nh);
   own.setCallbackQueue(&queue_);
   return own;
+}
+
+void SideThread::post(std::function<void()> work) {
+  queue_.addCallback(boost::make_shared<Work>(std::move(work)));
 }
 
 void SideThread::start() {

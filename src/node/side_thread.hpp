@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <thread>
 
 #include <ros/callback_queue.h>
@@ -12,7 +13,7 @@
 namespace fast_edi {
 
 /// One thread that calls the callbacks of one queue, in order. Here: requests to change parameters,
-/// and subscribers of the outputs that come and go.
+/// subscribers of the outputs that come and go, and what calls the ROS master.
 ///
 /// Why the latter need it: roscpp queues the callback for a new subscriber without looking whether
 /// its publisher is just ending (Publication::peerConnect takes no lock), so it may be queued after
@@ -31,6 +32,9 @@ class SideThread {
 
   /// Where handle() puts callbacks.
   ros::CallbackQueueInterface& queue() { return queue_; }
+
+  /// Lets \p work be called in this thread, behind what is queued. From any thread; waits for none.
+  void post(std::function<void()> work);
 
   /// From now on callbacks are called, those that are queued already too. Once; nothing after
   /// stop().

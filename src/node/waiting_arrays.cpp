@@ -1,5 +1,7 @@
 #include "node/waiting_arrays.hpp"
 
+#include <mutex>
+#include <shared_mutex>
 #include <utility>
 
 #include <boost/make_shared.hpp>
@@ -11,6 +13,7 @@ class WaitingArrays::Turn : public ros::CallbackInterface {
  public:
   explicit Turn(std::shared_ptr<State> state) : state_(std::move(state)) {}
   CallResult call() override {
+    const std::shared_lock<std::shared_mutex> at_work(state_->at_work);
     Waiting next;
     std::size_t lost_events = 0;
     {
@@ -42,13 +45,20 @@ WaitingArrays::WaitingArrays(ros::CallbackQueueInterface& queue, Limits limits, 
 }
 
 WaitingArrays::~WaitingArrays() {
+  end();
+}
+
+void WaitingArrays::end() {
   std::deque<Waiting> dropped;  // freed without the mutex
   {
     const std::lock_guard<std::mutex> lock(state_->mutex);
-    state_->ended = true;
+    if (std::exchange(state_->ended, true)) {
+      return;
+    }
     dropped.swap(state_->waiting);
   }
-  queue_.removeByID(id());  // waits for a delivery at work
+  queue_.removeByID(id());
+  const std::unique_lock<std::shared_mutex> waits_for_those_at_work(state_->at_work);
 }
 
 void WaitingArrays::add(std::size_t events, Delivery deliver) {
@@ -57,6 +67,9 @@ void WaitingArrays::add(std::size_t events, Delivery deliver) {
   {
     State& state = *state_;
     const std::lock_guard<std::mutex> lock(state.mutex);
+    if (state.ended) {
+      return;
+    }
     state.waiting.push_back({events, std::move(deliver)});
     state.waiting_events += events;
     while (state.waiting.size() > 1 && (state.waiting.size() > state.limits.arrays ||

@@ -12,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <shared_mutex>
 
 #include <ros/callback_queue_interface.h>
 
@@ -30,7 +31,7 @@ class WaitingArrays {
   /// \param queue whose thread delivers; must outlive this object
   /// \param on_loss called from \p queue as well
   WaitingArrays(ros::CallbackQueueInterface& queue, Limits limits, LossHandler on_loss);
-  /// Waits for a delivery at work to end, unless called from it. What waits is dropped.
+  /// See end().
   ~WaitingArrays();
   WaitingArrays(const WaitingArrays&) = delete;
   WaitingArrays& operator=(const WaitingArrays&) = delete;
@@ -40,6 +41,9 @@ class WaitingArrays {
   void add(std::size_t events, Delivery deliver);
   /// Another limit on events, from the next array on.
   void limitEvents(std::size_t events);
+  /// Drops what waits and what is added later, and waits for deliveries at work: not to be called
+  /// from one, nor with a lock held that one may want.
+  void end();
 
  private:
   struct Waiting {
@@ -50,7 +54,8 @@ class WaitingArrays {
   /// when the others were removed.
   struct State {
     LossHandler on_loss;
-    std::mutex mutex;  ///< guards what is below; held for a moment only
+    std::shared_mutex at_work;  ///< held by each delivery; taken before mutex
+    std::mutex mutex;           ///< guards what is below; held for a moment only
     Limits limits;
     bool ended = false;  ///< nothing is delivered any more
     std::deque<Waiting> waiting;

@@ -108,6 +108,14 @@ TEST_F(NodeDiagnosticsTest, ShowsSilence) {
   EXPECT_THAT(status.message, HasSubstr("no event array on /dvs/events for 3.0 s"));
 }
 
+TEST_F(NodeDiagnosticsTest, SaysThatTheMasterIsMissing) {
+  tick();
+  now_.master_missing = true;
+  const auto status = report();
+  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
+  EXPECT_THAT(status.message, HasSubstr("the ROS master cannot be reached"));
+}
+
 TEST_F(NodeDiagnosticsTest, CountsSilenceFromTheSubscription) {
   now_.last_frame_ns = 0;
   now_.listening_since_ns = now_.time_ns;

@@ -5,8 +5,9 @@
 #include <future>
 #include <thread>
 #include <utility>
+#include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <ros/callback_queue_interface.h>
 #include <boost/make_shared.hpp>
 
@@ -76,6 +77,20 @@ TEST_F(SideThreadTest, CallsInAThreadOfItsOwnOnceStarted) {
   EXPECT_NE(calls_.thread.load(), std::this_thread::get_id());
   queue_.addCallback(boost::make_shared<Call>(calls_), 1);
   EXPECT_TRUE(waitFor(calls_, 2));
+}
+
+TEST_F(SideThreadTest, CallsWhatIsPostedInOrder) {
+  std::vector<int> called;
+  std::promise<void> done;
+  for (const int i : {1, 2, 3}) {
+    thread_.post([&called, i] { called.push_back(i); });
+  }
+  thread_.post([&done] { done.set_value(); });
+  thread_.start();
+  done.get_future().wait();
+  thread_.stop();
+  thread_.post([&called] { called.push_back(4); });
+  EXPECT_THAT(called, ::testing::ElementsAre(1, 2, 3));
 }
 
 TEST_F(SideThreadTest, StoppingWaitsForTheCallbackAtWork) {
