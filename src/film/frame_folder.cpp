@@ -66,14 +66,6 @@ cv::Mat pixelsOf(const sensor_msgs::Image& image, const PngPixels& png) {
   return pixels;
 }
 
-std::string seconds(std::int64_t t_ns) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%lld.%09lld",
-                static_cast<long long>(t_ns / kNanosecondsPerSecond),
-                static_cast<long long>(t_ns % kNanosecondsPerSecond));
-  return text;
-}
-
 }  // namespace
 
 FrameFolder::FrameFolder(const std::string& path, bool overwrite) : path_(path) {
@@ -88,7 +80,7 @@ FrameFolder::FrameFolder(const std::string& path, bool overwrite) : path_(path) 
                          ": the folder is not empty (--force writes into it)");
   }
   list_.open(list, std::ios::trunc);
-  list_ << "file,stamp,exposure_start,exposure_end\n";
+  list_ << "index,file,stamp_ns,exposure_start_ns,exposure_end_ns\n";
   if (!list_.flush()) {
     throw RecordingError("cannot write " + list.string());
   }
@@ -104,14 +96,14 @@ bool FrameFolder::add(const sensor_msgs::Image& image,
     return false;
   }
   char name[32];
-  std::snprintf(name, sizeof(name), "%06llu.png", static_cast<unsigned long long>(frames_++));
+  std::snprintf(name, sizeof(name), "%06llu.png", static_cast<unsigned long long>(frames_));
   const std::string file = (fs::path(path_) / name).string();
   if (!cv::imwrite(file, pixelsOf(image, *png))) {
     throw RecordingError("cannot write " + file);
   }
-  list_ << name << "," << seconds(static_cast<std::int64_t>(image.header.stamp.toNSec())) << ",";
+  list_ << frames_++ << "," << name << "," << image.header.stamp.toNSec() << ",";
   if (exposure) {
-    list_ << seconds(exposure->start_ns) << "," << seconds(exposure->end_ns);
+    list_ << exposure->start_ns << "," << exposure->end_ns;
   } else {
     list_ << ",";
   }

@@ -4,10 +4,10 @@
 ///
 /// `frames.csv`, one line for each frame behind a line with the names:
 ///
-///     file,stamp,exposure_start,exposure_end
-///     000000.png,1700000000.035000000,1700000000.020000000,1700000000.050000000
+///     index,file,stamp_ns,exposure_start_ns,exposure_end_ns
+///     0,000000.png,1700000000035000000,1700000000020000000,1700000000050000000
 ///
-/// Times are in seconds; both exposure columns are empty where the exposure is not known.
+/// Times are in nanoseconds; both exposure columns are empty where the exposure is not known.
 #pragma once
 
 #include <cstdint>
