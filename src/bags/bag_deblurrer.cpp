@@ -88,10 +88,12 @@ BagDeblurReport BagDeblurrer::run() {
   const auto start = std::chrono::steady_clock::now();
   BagMessage message;
   while (!(report_.interrupted = stop_requested_ && stop_requested_()) && reader_.next(message)) {
-    if (writer_ != nullptr) {
-      writer_->copy(message);
+    if (!message.decoded) {
+      if (writer_ != nullptr) {
+        writer_->copy(message);
+      }
+      ++report_.messages;
     }
-    ++report_.messages;
     report_.last_record_time = message.time;
     if (!pipeline_.add(message)) {
       ++report_.malformed_messages;

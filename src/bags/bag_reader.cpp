@@ -34,6 +34,7 @@ bool BagReader::next(BagMessage& message) {
       read = readMessage(file_, chunk.offset + entry.offset, message);
     }
     if (read) {
+      message.offset = chunk.offset + (chunk.compressed() ? 0 : entry.offset);
       return true;
     }
     // One note for each chunk is enough: damage takes the messages behind it along.

@@ -10,7 +10,7 @@
 #include <std_msgs/Int32.h>
 
 #include "fast_edi/bags/bag_deserialise.hpp"
-#include "fast_edi/bags/bag_reader.hpp"
+#include "fast_edi/bags/open_messages.hpp"
 #include "fast_edi/events/event_wire.hpp"
 #include "fast_edi/messages/event_array.hpp"
 #include "fast_edi/messages/message_conversion.hpp"
@@ -36,28 +36,28 @@ std::string onlyImuTopic(const MessageSource& source) {
 
 }  // namespace
 
-BagRecording::BagRecording(const std::string& path, const TopicNames& topics) : topics_(topics) {
-  source_ = std::make_unique<BagReader>(path);
+BagRecording::BagRecording(const std::vector<std::string>& paths, const TopicNames& topics)
+    : topics_(topics), source_(openMessages(paths)) {
   topics_.output = "/convert_recording";  // none is written
   topics_ = guessTopics(topics_, source_->connections());
   const std::string faults = checkTopics(topics_, source_->connections());
   if (!faults.empty()) {
-    throw RecordingError(path + ": " + faults);
+    throw RecordingError(nameOf(paths) + ": " + faults);
   }
   imu_topic_ = onlyImuTopic(*source_);
   streams_ = {{StreamKind::kEvents, "events", "DAVIS", {}},
               {StreamKind::kFrames, "frames", "DAVIS", {}},
               {StreamKind::kImu, "imu", "DAVIS", {}}};
-  findSizes(path);
+  findSizes(paths);
 }
 
 BagRecording::~BagRecording() = default;
 
-void BagRecording::findSizes(const std::string& path) {
-  BagReader reader(path);
+void BagRecording::findSizes(const std::vector<std::string>& paths) {
+  const std::unique_ptr<MessageSource> reader = openMessages(paths);
   BagMessage message;
   while ((streams_[kEvents].size.pixelCount() == 0 || streams_[kFrames].size.pixelCount() == 0) &&
-         reader.next(message)) {
+         reader->next(message)) {
     try {
       if (message.connection->topic == topics_.events) {
         streams_[kEvents].size = sensorSize(*deserialise<EventArrayView>(message));

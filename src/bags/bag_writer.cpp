@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -94,11 +95,12 @@ void requireWritable(const std::string& path) {
 
 }  // namespace
 
-BagWriter::BagWriter(const std::string& path, const std::string& input_path,
+BagWriter::BagWriter(const std::string& path, const std::vector<std::string>& inputs,
                      const std::string& compression, bool overwrite)
     : path_(path), active_path_(path + ".active") {
   for (const std::string& output : {path_, active_path_}) {
-    if (sameFile(output, input_path)) {
+    if (std::any_of(inputs.begin(), inputs.end(),
+                    [&](const std::string& input) { return sameFile(output, input); })) {
       throw BagError("cannot write " + output + ": it is the input");
     }
     if (!overwrite && fs::exists(output)) {

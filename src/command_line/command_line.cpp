@@ -80,23 +80,17 @@ std::optional<po::variables_map> readCommandLine(int argc, char** argv,
   return values;
 }
 
-void sortWords(const std::vector<std::string>& words, std::string& bag,
+void sortWords(const std::vector<std::string>& words, std::vector<std::string>& recordings,
                std::vector<std::string>& overrides) {
   for (const std::string& word : words) {
-    if (word.find(":=") != std::string::npos) {
-      overrides.push_back(word);
-    } else if (bag.empty()) {
-      bag = word;
-    } else {
-      throw po::error("one recording at a time, got " + bag + " and " + word);
-    }
+    (word.find(":=") != std::string::npos ? overrides : recordings).push_back(word);
   }
 }
 
-void requireRecording(const std::vector<std::string>& words, std::string& bag,
-                      std::vector<std::string>& overrides) {
-  sortWords(words, bag, overrides);
-  if (bag.empty()) {
+void requireRecordings(const std::vector<std::string>& words, std::vector<std::string>& recordings,
+                       std::vector<std::string>& overrides) {
+  sortWords(words, recordings, overrides);
+  if (recordings.empty()) {
     throw po::error("expected a BAG");
   }
 }

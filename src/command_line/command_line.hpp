@@ -51,15 +51,14 @@ std::optional<boost::program_options::variables_map> readCommandLine(
     int argc, char** argv, const boost::program_options::options_description& options,
     const HelpText& text, std::vector<std::string>* words);
 
-/// Tells one recording and name:=value apart.
-/// \throws boost::program_options::error for a second recording
-void sortWords(const std::vector<std::string>& words, std::string& bag,
+/// Tells recordings and name:=value apart.
+void sortWords(const std::vector<std::string>& words, std::vector<std::string>& recordings,
                std::vector<std::string>& overrides);
 
 /// The same for a tool that cannot do without a recording.
-/// \throws boost::program_options::error for none, too
-void requireRecording(const std::vector<std::string>& words, std::string& bag,
-                      std::vector<std::string>& overrides);
+/// \throws boost::program_options::error for none
+void requireRecordings(const std::vector<std::string>& words, std::vector<std::string>& recordings,
+                       std::vector<std::string>& overrides);
 
 /// \throws std::runtime_error when \p path exists and is not to be replaced, or is a directory
 void requireFree(const std::string& path, bool overwrite);

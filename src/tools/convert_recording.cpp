@@ -18,8 +18,8 @@
 #include "fast_edi/bags/message_source.hpp"
 #include "fast_edi/bags/open_messages.hpp"
 #include "fast_edi/bags/topic_names.hpp"
+#include "fast_edi/pictures/open_pictures.hpp"
 #include "fast_edi/recording/aedat4_writer.hpp"
-#include "fast_edi/recording/open_recording.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "film/frame_folder.hpp"
 #include "progress_bar.hpp"
@@ -52,7 +52,7 @@ void handleSignals() {
 }
 
 struct Arguments {
-  std::string input;
+  std::vector<std::string> inputs;
   std::string output;
   std::string compression = "lz4";
   double array_ms = 0.0;
@@ -73,10 +73,10 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   tools::addForceOption(visible, arguments.overwrite);
   tools::addTopicOptions(visible, arguments.topics);
   const tools::HelpText text = {
-      "Usage: convert_recording IN OUT.bag       what davis_ros_driver would have recorded\n"
-      "       convert_recording IN OUT.aedat4    for iniVation's DV\n"
-      "       convert_recording IN FOLDER        frames as PNG, and frames.csv with their times\n\n"
-      "IN is a rosbag, AEDAT4 or rosbag2 (ROS 2), told by its content.\n"
+      "Usage: convert_recording IN... OUT.bag   what davis_ros_driver would have recorded\n"
+      "       convert_recording IN... OUT.aedat4 for iniVation's DV\n"
+      "       convert_recording IN... FOLDER     frames as PNG, and frames.csv with their times\n\n"
+      "IN is any recording that the package reads, told by its content.\n"
       "Bags have /dvs/events, /dvs/image_raw stamped in the middle of the exposure, the\n"
       "exposure's length on /dvs/exposure behind each frame, and /dvs/imu.\n",
       "0 done; 1 failed, no output; 2 the input was cut short or damaged: all of it that could be\n"
@@ -87,11 +87,12 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
     return false;
   }
   po::notify(*values);
-  if (words.size() != 2) {
+  if (words.size() < 2) {
     throw po::error("expected IN and OUT");
   }
-  arguments.input = words[0];
-  arguments.output = words[1];
+  arguments.output = words.back();
+  words.pop_back();
+  arguments.inputs = words;
   if (!(arguments.array_ms >= 0.0 && arguments.array_ms <= kMaxArray_ms)) {
     throw po::error("--array-ms " + std::to_string(arguments.array_ms) + ": expected 0..1000");
   }
@@ -125,20 +126,21 @@ void count(const fast_edi::RecordingItem& item, Counts& counts) {
 
 /// Any recording, item by item.
 std::unique_ptr<fast_edi::Recording> openItems(const Arguments& arguments) {
-  if (fast_edi::formatOf(arguments.input) == fast_edi::RecordingFormat::kRosbag) {
-    return std::make_unique<fast_edi::BagRecording>(arguments.input, arguments.topics);
+  if (arguments.inputs.size() == 1) {
+    if (std::unique_ptr<fast_edi::Recording> recording =
+            fast_edi::openRecordingOrPictures(arguments.inputs.front())) {
+      return recording;
+    }
   }
-  std::unique_ptr<fast_edi::Recording> recording = fast_edi::openRecording(arguments.input);
-  if (!recording) {
-    fast_edi::openMessages(arguments.input);  // throws, and says what is read
-  }
-  return recording;
+  return std::make_unique<fast_edi::BagRecording>(arguments.inputs, arguments.topics);
 }
 
 void refuseInputAsOutput(const Arguments& arguments) {
-  std::error_code ignored;  // one that does not exist is not the same
-  if (fs::equivalent(arguments.input, arguments.output, ignored)) {
-    throw fast_edi::RecordingError("cannot write " + arguments.output + ": it is the input");
+  for (const std::string& input : arguments.inputs) {
+    std::error_code ignored;  // one that does not exist is not the same
+    if (fs::equivalent(input, arguments.output, ignored)) {
+      throw fast_edi::RecordingError("cannot write " + arguments.output + ": it is the input");
+    }
   }
 }
 
@@ -164,7 +166,7 @@ int finish(const Arguments& arguments, const Counts& counts,
   if (counts.left_out > 0) {
     std::cerr << "warning: " << counts.left_out << " messages or frames were left out\n";
   }
-  tools::printDamage(arguments.input, damage);
+  tools::printDamage(fast_edi::nameOf(arguments.inputs), damage);
   if (counts.interrupted) {
     std::cerr << "interrupted: the output is complete up to there\n";
     return kInterrupted + interrupting_signal;
@@ -222,8 +224,8 @@ int toBag(const Arguments& arguments) {
   const auto array_ns = static_cast<std::int64_t>(
       arguments.array_ms * static_cast<double>(fast_edi::kNanosecondsPerMillisecond));
   const std::unique_ptr<fast_edi::MessageSource> source =
-      fast_edi::openMessages(arguments.input, array_ns);
-  fast_edi::BagWriter writer(arguments.output, arguments.input, arguments.compression,
+      fast_edi::openMessages(arguments.inputs, array_ns);
+  fast_edi::BagWriter writer(arguments.output, arguments.inputs, arguments.compression,
                              arguments.overwrite);
   std::uint64_t messages = 0;
   bool interrupted = false;
@@ -238,7 +240,7 @@ int toBag(const Arguments& arguments) {
   }
   writer.close();
   std::cout << messages << " messages\nwritten: " << arguments.output << "\n" << std::flush;
-  tools::printDamage(arguments.input, source->damage());
+  tools::printDamage(fast_edi::nameOf(arguments.inputs), source->damage());
   if (interrupted) {
     std::cerr << "interrupted: the output is complete up to there\n";
     return kInterrupted + interrupting_signal;

@@ -39,7 +39,7 @@ using tools::kDone;
 using tools::kInputIncomplete;
 
 struct Arguments {
-  std::string bag;
+  std::vector<std::string> recordings;
   std::string config;
   std::string truth_topic = "/dvs/ground_truth/image_raw";
   fast_edi::TopicNames topics;
@@ -106,7 +106,7 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   std::vector<std::string> words;
   auto values = tools::readCommandLine(
       argc, argv, visible,
-      {"Usage: count_tags BAG [options] [parameter:=value ...]\n\n"
+      {"Usage: count_tags BAG... [options] [parameter:=value ...]\n\n"
        "Counts AprilTags in the frames of a recording: blurry, by plain EDI (filter:\n"
        "false), by this package as its parameters are, and in the true sharp frames\n"
        "where the recording has them. A tag is false when the true frame of its stamp\n"
@@ -117,7 +117,7 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
     return false;
   }
   po::notify(*values);
-  tools::requireRecording(words, arguments.bag, arguments.overrides);
+  tools::requireRecordings(words, arguments.recordings, arguments.overrides);
   return true;
 }
 
@@ -204,7 +204,8 @@ class TagCounter {
 };
 
 int run(const Arguments& arguments) {
-  const std::unique_ptr<fast_edi::MessageSource> recording = fast_edi::openMessages(arguments.bag);
+  const std::unique_ptr<fast_edi::MessageSource> recording =
+      fast_edi::openMessages(arguments.recordings);
   fast_edi::MessageSource& reader = *recording;
   const fast_edi::LoadedParameters parameters =
       tools::loadParametersFor(reader, arguments.config, arguments.overrides);
@@ -212,7 +213,7 @@ int run(const Arguments& arguments) {
   TagCounter counter(arguments, parameters);
   const std::string faults = fast_edi::checkTopics(arguments.topics, reader.connections());
   if (!faults.empty()) {
-    throw fast_edi::BagError(arguments.bag + ": " + faults);
+    throw fast_edi::BagError(fast_edi::nameOf(arguments.recordings) + ": " + faults);
   }
   std::uint64_t malformed = 0;
   {
@@ -225,12 +226,12 @@ int run(const Arguments& arguments) {
     counter.finish();
   }
   std::printf("%s, AprilTag %s, %llu frames deblurred of %llu\n",
-              std::filesystem::path(arguments.bag).filename().c_str(),
+              std::filesystem::path(arguments.recordings.front()).filename().c_str(),
               arguments.detector.family.c_str(),
               static_cast<unsigned long long>(counter.counters().frames_deblurred),
               static_cast<unsigned long long>(counter.counters().frames_in));
   counter.print();
-  tools::printDamage(arguments.bag, reader.damage());
+  tools::printDamage(fast_edi::nameOf(arguments.recordings), reader.damage());
   tools::printMalformed(malformed);
   return reader.damage().empty() && malformed == 0 ? kDone : kInputIncomplete;
 }

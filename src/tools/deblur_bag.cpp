@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <boost/program_options.hpp>
@@ -13,13 +14,13 @@
 #include "command_line.hpp"
 #include "fast_edi/bags/bag_deblurrer.hpp"
 #include "fast_edi/bags/bag_error.hpp"
-#include "fast_edi/bags/bag_reader.hpp"
 #include "fast_edi/bags/bag_writer.hpp"
 #include "fast_edi/bags/message_source.hpp"
 #include "fast_edi/bags/open_messages.hpp"
 #include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "film/film_writer.hpp"
+#include "film/frame_folder.hpp"
 #include "progress_bar.hpp"
 
 namespace {
@@ -50,7 +51,7 @@ void handleSignals() {
 }
 
 struct Arguments {
-  std::string input;
+  std::vector<std::string> inputs;
   std::string output;
   std::string config;
   std::string compression;
@@ -58,6 +59,7 @@ struct Arguments {
   std::vector<std::string> overrides;
   bool overwrite = false;
   std::string video;
+  std::string frames;
   int film_rate_hz = kDefaultFilmRate_hz;
 };
 
@@ -65,9 +67,12 @@ po::options_description describeOptions(Arguments& arguments) {
   fast_edi::TopicNames& topics = arguments.topics;
   po::options_description options("Options");
   options.add_options()("help,h", "print this")(
-      "in", po::value(&arguments.input)->required()->value_name("BAG"), "recording to read")(
+      "in", po::value(&arguments.inputs)->required()->multitoken()->value_name("BAG..."),
+      "recording to read, or several of one camera in the order of their record times")(
       "out", po::value(&arguments.output)->value_name("BAG"),
-      "recording to write; needed unless --video is given")(
+      "recording to write; needed unless --video or --frames is given")(
+      "frames", po::value(&arguments.frames)->value_name("FOLDER"),
+      "folder for the deblurred frames as PNG, and frames.csv with their stamps and exposures")(
       "video", po::value(&arguments.video)->value_name("FILM"),
       "film to write, in slow motion: .mp4, .mov (MPEG-4) or .avi (Motion JPEG)")(
       "fps",
@@ -91,7 +96,8 @@ tools::HelpText helpText() {
   return {
       "Usage: deblur_bag --in IN.bag --out OUT.bag --config cfg/davis346.yaml "
       "[options] [parameter:=value ...]\n"
-      "       deblur_bag --in IN.bag --video OUT.mp4 --fps 500 --config ...\n\n"
+      "       deblur_bag --in IN.bag --video OUT.mp4 --fps 500 --config ...\n"
+      "       deblur_bag --in IN.bag --frames FOLDER --config ...\n\n"
       "Copies a recording and adds its deblurred frames as <image "
       "namespace>/deblurred/image_raw and\n.../camera_info. Parameters given as name:=value "
       "come before those of the YAML file.\n"
@@ -112,12 +118,15 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
     return false;
   }
   po::notify(*values);
+  // --in takes every word up to the next option.
+  const std::vector<std::string> words = std::exchange(arguments.inputs, {});
+  tools::requireRecordings(words, arguments.inputs, arguments.overrides);
   const std::string& kind = arguments.compression;
   if (kind != "same" && !fast_edi::isKnownCompression(kind)) {
     throw po::error("--compression " + kind + ": expected same, none, bz2 or lz4");
   }
-  if (arguments.output.empty() && arguments.video.empty()) {
-    throw po::error("neither --out nor --video is given: nothing to write");
+  if (arguments.output.empty() && arguments.video.empty() && arguments.frames.empty()) {
+    throw po::error("neither --out nor --video nor --frames is given: nothing to write");
   }
   if (arguments.film_rate_hz < 1 || arguments.film_rate_hz > fast_edi::kMaxLatentRate_hz) {
     throw po::error("--fps " + std::to_string(arguments.film_rate_hz) + ": expected 1.." +
@@ -130,9 +139,8 @@ void printInterruption(const fast_edi::MessageSource& reader,
                        const fast_edi::BagDeblurReport& report) {
   if (report.interrupted) {
     // Other recordings than bags do not tell how many messages they make.
-    const std::string of_all = dynamic_cast<const fast_edi::BagReader*>(&reader) != nullptr
-                                   ? " of " + std::to_string(reader.length())
-                                   : std::string();
+    const std::string of_all =
+        reader.countsMessages() ? " of " + std::to_string(reader.length()) : std::string();
     std::cerr << "interrupted by " << (interrupting_signal == SIGINT ? "SIGINT" : "SIGTERM")
               << " after " << report.messages << of_all
               << " messages: the output is closed and ends there\n";
@@ -150,6 +158,18 @@ void printDamage(const fast_edi::MessageSource& reader, const fast_edi::BagDeblu
   tools::printDamage(input, report.damage);
 }
 
+/// What deblurring would need, and the recording does not have.
+void printMissing(const fast_edi::BagDeblurReport& report, const Arguments& arguments) {
+  const std::string name = fast_edi::nameOf(arguments.inputs);
+  if (report.counters.frames_in == 0) {
+    std::cerr << "warning: " << name << " has no frames on " << arguments.topics.image
+              << ": nothing was deblurred\n";
+  }
+  if (report.counters.events_in == 0) {
+    std::cerr << "warning: " << name << " has no events on " << arguments.topics.events << "\n";
+  }
+}
+
 void printFilm(const fast_edi::FilmReport& film, const std::string& path) {
   std::cout << "film: " << film.images << " images";
   if (film.held > 0) {
@@ -164,9 +184,15 @@ void printFilm(const fast_edi::FilmReport& film, const std::string& path) {
   std::cout << "\nwritten: " << path << "\n";
 }
 
+/// A deblurred frame, or one that was passed through; its exposure where that is known.
+void addTo(fast_edi::FrameFolder& folder, const fast_edi::BagPipeline::Output& output) {
+  const fast_edi::ExposureInterval& exposure = output.frame.exposure;
+  folder.add(*output.image, exposure.length() > 0 ? std::optional(exposure) : std::nullopt);
+}
+
 int run(const Arguments& arguments) {
   const std::unique_ptr<fast_edi::MessageSource> recording =
-      fast_edi::openMessages(arguments.input);
+      fast_edi::openMessages(arguments.inputs);
   fast_edi::MessageSource& reader = *recording;
   fast_edi::LoadedParameters parameters =
       tools::loadParametersFor(reader, arguments.config, arguments.overrides);
@@ -176,7 +202,7 @@ int run(const Arguments& arguments) {
   tools::printWarnings(parameters);
   const std::string faults = fast_edi::checkTopics(arguments.topics, reader.connections());
   if (!faults.empty()) {
-    throw fast_edi::BagError(arguments.input + ": " + faults);
+    throw fast_edi::BagError(fast_edi::nameOf(arguments.inputs) + ": " + faults);
   }
   const std::string compression =
       arguments.compression == "same" ? reader.compression() : arguments.compression;
@@ -184,9 +210,13 @@ int run(const Arguments& arguments) {
   if (!arguments.video.empty()) {
     film.emplace(arguments.video, arguments.film_rate_hz, arguments.overwrite);
   }
+  std::optional<fast_edi::FrameFolder> folder;
+  if (!arguments.frames.empty()) {
+    folder.emplace(arguments.frames, arguments.overwrite);
+  }
   std::optional<fast_edi::BagWriter> writer;
   if (!arguments.output.empty()) {
-    writer.emplace(arguments.output, arguments.input, compression, arguments.overwrite);
+    writer.emplace(arguments.output, arguments.inputs, compression, arguments.overwrite);
   }
   fast_edi::BagDeblurReport report;
   {
@@ -194,14 +224,17 @@ int run(const Arguments& arguments) {
     fast_edi::BagDeblurrer deblurrer(
         reader, writer ? &*writer : nullptr, arguments.topics, parameters,
         [&bar](std::uint64_t done, std::uint64_t total) { bar.update(done, total); });
-    if (film) {
-      deblurrer.setOutputHandler([&film](const fast_edi::BagPipeline::Output& output) {
+    deblurrer.setOutputHandler([&film, &folder](const fast_edi::BagPipeline::Output& output) {
+      if (folder) {
+        addTo(*folder, output);
+      }
+      if (film) {
         film->addFrame(*output.image);
         for (const sensor_msgs::ImagePtr& latent : output.latent) {
           film->addLatent(*latent);
         }
-      });
-    }
+      }
+    });
     deblurrer.setStopRequest([] { return interrupting_signal != 0; });
     report = deblurrer.run();
   }
@@ -211,6 +244,9 @@ int run(const Arguments& arguments) {
   if (film) {
     film->close();
   }
+  if (folder) {
+    folder->close();
+  }
   printSummary(std::cout, report);
   if (writer) {
     std::cout << "written: " << arguments.output << "\n";
@@ -218,14 +254,24 @@ int run(const Arguments& arguments) {
   if (film) {
     printFilm(film->report(), arguments.video);
   }
+  if (folder) {
+    std::cout << "written: " << folder->frames() << " frames to " << arguments.frames << "\n";
+  }
   std::cout << std::flush;
-  printDamage(reader, report, arguments.input);
+  if (!report.interrupted) {
+    printMissing(report, arguments);
+  }
+  printDamage(reader, report, fast_edi::nameOf(arguments.inputs));
   tools::printMalformed(report.malformed_messages);
+  if (folder && folder->leftOut() > 0) {
+    std::cerr << "warning: " << folder->leftOut() << " frames that PNG cannot hold left out of "
+              << arguments.frames << "\n";
+  }
   printInterruption(reader, report);
   if (report.interrupted) {
     return kInterrupted + interrupting_signal;
   }
-  return report.incomplete() ? kInputIncomplete : kDone;
+  return report.incomplete() || (folder && folder->leftOut() > 0) ? kInputIncomplete : kDone;
 }
 
 }  // namespace

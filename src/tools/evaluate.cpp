@@ -47,7 +47,7 @@ using tools::kDone;
 using tools::kInputIncomplete;
 
 struct Arguments {
-  std::string bag;
+  std::vector<std::string> recordings;
   std::string config;
   std::string output;
   std::string command;
@@ -145,7 +145,7 @@ po::options_description describeOptions(Arguments& arguments) {
 
 tools::HelpText helpText() {
   return {
-      "Usage: evaluate BAG [options] [parameter:=value ...]\n"
+      "Usage: evaluate BAG... [options] [parameter:=value ...]\n"
       "       evaluate --sequences SET [options] [parameter:=value ...]\n\n"
       "Compares the blurry input, plain EDI, counter EDI, EDI with the contrast found by\n"
       "sharpness, and the package's own output: table on standard output, report with\n"
@@ -166,9 +166,9 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
     return false;
   }
   po::notify(*values);
-  tools::sortWords(words, arguments.bag, arguments.overrides);
+  tools::sortWords(words, arguments.recordings, arguments.overrides);
   const bool simulated = !arguments.sequences.empty();
-  if (simulated != arguments.bag.empty()) {
+  if (simulated != arguments.recordings.empty()) {
     throw po::error("expected either a BAG or --sequences");
   }
   if (arguments.scorer.first_frames_unscored < 0) {
@@ -242,8 +242,8 @@ cv::Mat toMono8(const sensor_msgs::Image& message) {
 /// True frames by stamp, read before everything else: a truth may be recorded after its frame.
 class TruthFrames {
  public:
-  TruthFrames(const std::string& bag, const std::string& topic) {
-    const std::unique_ptr<fast_edi::MessageSource> reader = fast_edi::openMessages(bag);
+  TruthFrames(const std::vector<std::string>& recordings, const std::string& topic) {
+    const std::unique_ptr<fast_edi::MessageSource> reader = fast_edi::openMessages(recordings);
     fast_edi::BagMessage message;
     while (reader->next(message)) {
       if (message.connection->topic != topic) {
@@ -332,7 +332,8 @@ void printGroups(const std::vector<fast_edi::EvaluationGroup>& groups,
 }
 
 int evaluateBag(const Arguments& arguments) {
-  const std::unique_ptr<fast_edi::MessageSource> recording = fast_edi::openMessages(arguments.bag);
+  const std::unique_ptr<fast_edi::MessageSource> recording =
+      fast_edi::openMessages(arguments.recordings);
   fast_edi::MessageSource& reader = *recording;
   const fast_edi::LoadedParameters loaded =
       tools::loadParametersFor(reader, arguments.config, arguments.overrides);
@@ -341,12 +342,12 @@ int evaluateBag(const Arguments& arguments) {
   const fast_edi::DeblurParameters& parameters = loaded.deblur;
   const std::string faults = fast_edi::checkTopics(arguments.topics, reader.connections());
   if (!faults.empty()) {
-    throw fast_edi::BagError(arguments.bag + ": " + faults);
+    throw fast_edi::BagError(fast_edi::nameOf(arguments.recordings) + ": " + faults);
   }
-  const TruthFrames truth(arguments.bag, arguments.truth_topic);
+  const TruthFrames truth(arguments.recordings, arguments.truth_topic);
   const fast_edi::FrameScorer scorer(arguments.scorer);
   fast_edi::EvaluationRecorder recorder(
-      std::filesystem::path(arguments.bag).filename().string(), scorer,
+      std::filesystem::path(arguments.recordings.front()).filename().string(), scorer,
       [&truth](std::int64_t stamp_ns) { return truth.at(stamp_ns); });
   fast_edi::MethodComparison comparison(
       parameters, arguments.search,
@@ -374,10 +375,10 @@ int evaluateBag(const Arguments& arguments) {
     notes.push_back(std::to_string(count) + " frames left out: " + reason);
   }
   if (evaluation.frames.empty()) {
-    throw std::runtime_error(arguments.bag + ": no frame could be deblurred" +
-                             (evaluation.left_out.empty()
-                                  ? std::string()
-                                  : " (" + evaluation.left_out.begin()->first + ")"));
+    throw std::runtime_error(
+        fast_edi::nameOf(arguments.recordings) + ": no frame could be deblurred" +
+        (evaluation.left_out.empty() ? std::string()
+                                     : " (" + evaluation.left_out.begin()->first + ")"));
   }
   const std::vector<fast_edi::EvaluationGroup> groups = {{evaluation.name, {&evaluation}}};
   printGroups(groups, notes);
@@ -386,7 +387,7 @@ int evaluateBag(const Arguments& arguments) {
                                      {"Evaluation of " + evaluation.name, arguments.command, notes},
                                      groups)
             << "\n";
-  tools::printDamage(arguments.bag, reader.damage());
+  tools::printDamage(fast_edi::nameOf(arguments.recordings), reader.damage());
   tools::printMalformed(malformed);
   return reader.damage().empty() && malformed == 0 ? kDone : kInputIncomplete;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <limits>
@@ -27,8 +28,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "command_line.hpp"
+#include "fast_edi/bags/bag_recording.hpp"
 #include "fast_edi/bags/bag_writer.hpp"
+#include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/messages/event_array.hpp"
+#include "fast_edi/recording/aedat4_writer.hpp"
 #include "simulation/davis_simulator.hpp"
 #include "simulation/recording_faults.hpp"
 #include "simulation/sensor_models.hpp"
@@ -122,7 +126,7 @@ class Recording {
  public:
   Recording(const RecordingOptions& options, const DavisSimulator& simulator)
       : options_(options),
-        writer_(options.path, "", options.compression, options.overwrite),
+        writer_(options.path, {}, options.compression, options.overwrite),
         timing_(simulator.settings().timing),
         faulty_(options.faults, simulator.settings().sensor.size, timing_),
         array_end_ns_(timing_.start_ns) {
@@ -389,9 +393,47 @@ void showProgress(int done, int total, std::uint64_t events) {
   if (done == total) std::fputc('\n', stderr);
 }
 
+bool isAedat4(const std::string& path) {
+  return std::filesystem::path(path).extension() == ".aedat4";
+}
+
+fast_edi::Aedat4Compression aedat4Compression(const std::string& name) {
+  if (name == "none") return fast_edi::Aedat4Compression::kNone;
+  if (name == "lz4") return fast_edi::Aedat4Compression::kLz4;
+  if (name == "zstd") return fast_edi::Aedat4Compression::kZstd;
+  throw std::invalid_argument("--compression " + name + ": expected none, lz4 or zstd for AEDAT4");
+}
+
+/// Events, frames with their exposures and IMU samples of a bag; AEDAT4 has no place for the rest.
+void writeAedat4(const std::string& bag, const RecordingOptions& options) {
+  fast_edi::TopicNames topics;
+  topics.events = options.name_space + "/events";
+  topics.image = options.name_space + "/image_raw";
+  topics.exposure = options.name_space + "/exposure";
+  fast_edi::BagRecording recording({bag}, topics);
+  fast_edi::Aedat4Writer writer(options.path, recording.streams(),
+                                aedat4Compression(options.compression), options.overwrite);
+  fast_edi::RecordingItem item;
+  while (recording.next(item)) {
+    writer.write(item);
+  }
+  writer.close();
+}
+
 void simulate(const SimulationSettings& settings, const RecordingOptions& options) {
   DavisSimulator simulator(settings);
-  Recording recording(options, simulator);
+  RecordingOptions bag = options;
+  if (isAedat4(options.path)) {
+    aedat4Compression(options.compression);  // throws before the work is done
+    if (options.stamp != ExposureInstant::kMid) {
+      throw std::invalid_argument(
+          "--stamp: AEDAT4 has start and end of the exposure, expected mid");
+    }
+    tools::requireFree(options.path, options.overwrite);
+    bag.path += ".bag";  // for the time being
+    bag.compression = "none";
+  }
+  Recording recording(bag, simulator);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   std::uint64_t events = 0;
   std::size_t tags = 0;
@@ -405,6 +447,10 @@ void simulate(const SimulationSettings& settings, const RecordingOptions& option
     if (terminal) showProgress(frames, settings.timing.frames, events);
   }
   recording.close(interval.end_ns);
+  if (isAedat4(options.path)) {
+    writeAedat4(bag.path, options);
+    std::filesystem::remove(bag.path);
+  }
   const double seconds = static_cast<double>(interval.end_ns - settings.timing.start_ns) /
                          static_cast<double>(fast_edi::kNanosecondsPerSecond);
   std::printf("%s: %d frames, %llu events in %.2f s (%.2f million/s), %zu tags in view\n",
@@ -426,11 +472,13 @@ int run(int argc, char** argv) {
 
   po::options_description output("Recording");
   output.add_options()("help,h", "print this text");
-  output.add_options()("out,o", po::value<std::string>()->value_name("PATH"), "bag to write");
+  output.add_options()("out,o", po::value<std::string>()->value_name("PATH"),
+                       "bag to write, or AEDAT4 (.aedat4) without the true frames");
   bool overwrite_by_old_name = false;
   tools::addForceOption(output, options.overwrite);
   output.add_options()("overwrite", po::bool_switch(&overwrite_by_old_name), "old name of --force");
-  addOption(output, "compression", options.compression, "none, bz2 or lz4");
+  addOption(output, "compression", options.compression,
+            "none, bz2 or lz4; of AEDAT4 none, lz4 or zstd");
   addOption(output, "namespace", options.name_space, "namespace of all topics");
   addOption(output, "encoding", options.encoding, "mono8, mono16, bayer_rggb8, rgb8 or bgr8");
   addOption(output, "stamp", stamp,

@@ -82,7 +82,12 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   }
   po::notify(*values);
   std::vector<std::string> overrides;
-  tools::requireRecording(words, arguments.bag, overrides);
+  std::vector<std::string> bags;
+  tools::requireRecordings(words, bags, overrides);
+  if (bags.size() > 1) {
+    throw po::error("one recording at a time, got " + bags[0] + " and " + bags[1]);
+  }
+  arguments.bag = bags.front();
   if (!overrides.empty()) {
     throw po::error("takes no parameters, got " + overrides.front());
   }

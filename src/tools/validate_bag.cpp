@@ -40,7 +40,7 @@ using tools::kDone;
 using tools::kFindings;
 
 struct Arguments {
-  std::string bag;
+  std::vector<std::string> recordings;
   std::string config;
   std::string output;
   fast_edi::TopicNames topics;
@@ -63,7 +63,8 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   std::vector<std::string> words;
   auto values = tools::readCommandLine(
       argc, argv, visible,
-      {"Usage: validate_bag BAG [--config cfg/davis346.yaml] [options] [parameter:=value ...]\n\n"
+      {"Usage: validate_bag BAG... [--config cfg/davis346.yaml] [options] [parameter:=value "
+       "...]\n\n"
        "Looks through a recording for what breaks deblurring. For each finding it prints what\n"
        "was expected, what was found and what to set, and at the end lines for a YAML file.\n"
        "Topics of other names are taken when they are the only ones of their type.\n",
@@ -73,7 +74,7 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
     return false;
   }
   po::notify(*values);
-  tools::requireRecording(words, arguments.bag, arguments.overrides);
+  tools::requireRecordings(words, arguments.recordings, arguments.overrides);
   return true;
 }
 
@@ -148,7 +149,8 @@ struct PassResult {
 PassResult readThrough(const Arguments& arguments, const fast_edi::TopicNames& topics,
                        const std::string& label, fast_edi::RecordingValidator& validator) {
   PassResult result;
-  const std::unique_ptr<fast_edi::MessageSource> recording = fast_edi::openMessages(arguments.bag);
+  const std::unique_ptr<fast_edi::MessageSource> recording =
+      fast_edi::openMessages(arguments.recordings);
   fast_edi::MessageSource& reader = *recording;
   fast_edi::ProgressBar bar(label);
   fast_edi::BagMessage message;
@@ -209,7 +211,7 @@ int run(const Arguments& arguments) {
   if (!arguments.output.empty()) {
     tools::requireFree(curvePath(arguments), arguments.overwrite);
   }
-  std::unique_ptr<fast_edi::MessageSource> recording = fast_edi::openMessages(arguments.bag);
+  std::unique_ptr<fast_edi::MessageSource> recording = fast_edi::openMessages(arguments.recordings);
   const Assumed assumed = assumedParameters(arguments, *recording);
   fast_edi::TopicNames topics = arguments.topics;
   topics.output = "/validate_bag";  // writes none: topics of deblurred frames may be there already

@@ -134,7 +134,7 @@ TEST_F(EvaluateTest, NamesWhatIsWrong) {
     EXPECT_THAT(result.output, HasSubstr(message));
   };
   fails("", "expected either a BAG or --sequences");
-  fails("a.bag b.bag" + kThresholds, "one recording at a time");
+  fails("a.bag b.bag" + kThresholds, "a.bag");
   fails("/nonexistent.bag" + kThresholds, "/nonexistent.bag");
   fails(kDemo, "contrast_threshold_on");
   fails("--sequences twelve --frames 0", "at least one frame");

@@ -7,6 +7,7 @@
 
 #include <ros/serialization.h>
 #include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 #include <boost/make_shared.hpp>
 #include <boost/shared_ptr.hpp>
@@ -46,6 +47,16 @@ struct Lengths<sensor_msgs::Image> {
 };
 
 template <>
+struct Lengths<sensor_msgs::CompressedImage> {
+  static void require(ros::serialization::IStream stream) {
+    sensor_msgs::CompressedImage image;
+    stream.next(image.header);
+    stream.next(image.format);
+    requireStatedLength(stream, sizeof(std::uint8_t));
+  }
+};
+
+template <>
 struct Lengths<sensor_msgs::CameraInfo> {
   static void require(ros::serialization::IStream stream) {
     sensor_msgs::CameraInfo info;
@@ -59,9 +70,9 @@ struct Lengths<sensor_msgs::CameraInfo> {
 
 }  // namespace bag_deserialise_detail
 
-/// Reads \p raw, whose type must be \p Message. Images and camera_infos never make room for more
-/// than the bytes that are there.
-/// \throws ros::serialization::StreamOverrunException when it is shorter than it says
+/// Reads \p raw, whose type must be \p Message. Images, compressed ones too, and camera_infos never
+/// make room for more than the bytes that are there. \throws
+/// ros::serialization::StreamOverrunException when it is shorter than it says
 template <typename Message>
 boost::shared_ptr<Message> deserialise(const BagMessage& raw) {
   // IStream only reads, but wants to be able to write.

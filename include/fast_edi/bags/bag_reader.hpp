@@ -47,6 +47,7 @@ class BagReader : public MessageSource {
   /// Messages that next() has come by, readable or not.
   std::uint64_t position() const override { return position_; }
   std::uint64_t length() const override { return messageCount(); }
+  bool countsMessages() const override { return true; }
   /// From the first record time to the last.
   ros::Duration duration() const;
   /// Of the first chunk: "none", "bz2" or "lz4".

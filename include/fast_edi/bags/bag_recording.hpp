@@ -21,14 +21,15 @@ namespace fast_edi {
 
 class BagRecording : public Recording {
  public:
-  /// \param path of a rosbag
+  /// \param paths of one recording or several, as openMessages() takes them
   /// \param topics frames, events and exposures; IMU samples are those of the only
   ///        topic that has them
-  /// \throws RecordingError when it is none, or has no events and no frames on these topics
-  BagRecording(const std::string& path, const TopicNames& topics);
+  /// \throws RecordingError when they cannot be read, or have no events and no frames on these
+  /// topics
+  BagRecording(const std::vector<std::string>& paths, const TopicNames& topics);
   ~BagRecording() override;
 
-  std::string format() const override { return "rosbag"; }
+  std::string format() const override { return "ROS messages"; }
   const std::vector<RecordedStream>& streams() const override { return streams_; }
   bool next(RecordingItem& item) override;
   const std::vector<RecordingDamage>& damage() const override { return source_->damage(); }
@@ -42,7 +43,7 @@ class BagRecording : public Recording {
  private:
   bool take(const BagMessage& message, RecordingItem& item);
   bool giveFrame(std::optional<std::int64_t> exposure_ns, RecordingItem& item);
-  void findSizes(const std::string& path);
+  void findSizes(const std::vector<std::string>& paths);
 
   TopicNames topics_;
   std::string imu_topic_;

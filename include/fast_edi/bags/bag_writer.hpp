@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <ros/time.h>
 #include <rosbag/bag.h>
@@ -16,12 +17,12 @@ namespace fast_edi {
 /// rosbag::Bag writing to PATH.active, renamed to PATH by close().
 class BagWriter {
  public:
-  /// \param input_path the bag that is being read: refused as an output
+  /// \param inputs the recordings that are being read: refused as an output
   /// \param compression "none", "bz2" or "lz4"
   /// \param overwrite replace \p path and PATH.active if they exist
   /// \throws BagError for a path that cannot or may not be written
-  BagWriter(const std::string& path, const std::string& input_path, const std::string& compression,
-            bool overwrite);
+  BagWriter(const std::string& path, const std::vector<std::string>& inputs,
+            const std::string& compression, bool overwrite);
   /// Leaves PATH.active behind when close() was not reached.
   ~BagWriter();
   BagWriter(const BagWriter&) = delete;

@@ -20,6 +20,8 @@ struct BagMessage {
   ros::Time time;  ///< record time
   const std::uint8_t* data = nullptr;
   std::uint32_t size = 0;
+  std::uint64_t offset = 0;  ///< in its file; of its chunk where that is compressed
+  bool decoded = false;      ///< made of the message before it: not in the recording itself
 };
 
 class MessageSource {
@@ -40,6 +42,8 @@ class MessageSource {
   virtual std::uint64_t position() const = 0;
   /// What position() is at the end.
   virtual std::uint64_t length() const = 0;
+  /// Whether length() is the number of messages.
+  virtual bool countsMessages() const { return false; }
   /// Of a bag: "none", "bz2" or "lz4".
   virtual std::string compression() const { return "none"; }
   virtual std::uint64_t fileSize() const = 0;
