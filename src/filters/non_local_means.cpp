@@ -72,17 +72,17 @@ void addNeighbours(const Neighbours* neighbours, const float* __restrict values,
   const Neighbours b = neighbours[1];
   const Neighbours c = neighbours[2];
   const Neighbours d = neighbours[3];
-  const auto sumOf = [](const Neighbours& n, std::size_t i, float value) {
+  const auto sum_of = [](const Neighbours& n, std::size_t i, float value) {
     return n.ahead_weight[i] * (n.ahead[i] - value) + n.behind_weight[i] * (n.behind[i] - value);
   };
-  const auto weightOf = [](const Neighbours& n, std::size_t i) {
+  const auto weight_of = [](const Neighbours& n, std::size_t i) {
     return n.ahead_weight[i] + n.behind_weight[i];
   };
   for (std::size_t i = 0; i < blocks * kBlock; ++i) {
     const float value = values[i];
-    weighted[i] += (sumOf(a, i, value) + sumOf(b, i, value)) +  //
-                   (sumOf(c, i, value) + sumOf(d, i, value));
-    weight[i] += (weightOf(a, i) + weightOf(b, i)) + (weightOf(c, i) + weightOf(d, i));
+    weighted[i] += (sum_of(a, i, value) + sum_of(b, i, value)) +  //
+                   (sum_of(c, i, value) + sum_of(d, i, value));
+    weight[i] += (weight_of(a, i) + weight_of(b, i)) + (weight_of(c, i) + weight_of(d, i));
   }
 }
 
