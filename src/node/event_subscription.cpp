@@ -193,7 +193,7 @@ EventSubscription::Source EventSubscription::State::wanted() const {
 }
 
 void EventSubscription::State::receive(const ros::MessageEvent<const EventArray>& event) {
-  const EventArray::ConstPtr array = event.getConstMessage();
+  const EventArray::ConstPtr& array = event.getConstMessage();
   // One that never was on the wire arrives now.
   const std::int64_t arrived_ns =
       array->decodingSince() != 0 ? array->decodingSince() : steadyNow();

@@ -23,10 +23,10 @@ class Reconstruction {
  public:
   /// A frame whose integral was computed.
   struct Frame {
-    const OutputFrame& output;  ///< with input, output stamp and exposure
-    ExposureInterval window;    ///< the exposure in event time
-    std::int64_t reference_ns;  ///< of the gains, in event time
-    std::uint64_t epoch;        ///< of the frames' clock
+    const OutputFrame& output;      ///< with input, output stamp and exposure
+    ExposureInterval window;        ///< the exposure in event time
+    std::int64_t reference_ns = 0;  ///< of the gains, in event time
+    std::uint64_t epoch = 0;        ///< of the frames' clock
 
     LevelInstant reference() const { return {reference_ns, window.end_ns}; }
   };
