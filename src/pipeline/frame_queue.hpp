@@ -85,10 +85,10 @@ class FrameQueue {
  private:
   struct WaitingFrame {
     InputFrame input;
-    std::uint64_t number;  ///< in order of arrival
-    std::uint64_t epoch;
-    bool after_time_jump;  ///< its epoch began with a jump back
-    std::int64_t arrival_ns;
+    std::uint64_t number = 0;  ///< in order of arrival
+    std::uint64_t epoch = 0;
+    bool after_time_jump = false;  ///< its epoch began with a jump back
+    std::int64_t arrival_ns = 0;
     ExposureWindow window;
   };
 

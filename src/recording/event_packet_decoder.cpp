@@ -163,7 +163,7 @@ void EventPacketDecoder::decodeMono(const std::uint8_t* word, std::vector<Event>
       static_cast<unsigned>((data >> kMonoYShift) & kMonoY), (data >> kMonoOnShift) != 0, events);
 }
 
-std::uint64_t EventPacketDecoder::wordTime_ns() const {
+std::uint64_t EventPacketDecoder::wordTime() const {
   return (time_high_us_ + time_low_us_) * kNanoseconds;
 }
 
@@ -173,7 +173,7 @@ void EventPacketDecoder::addMask(unsigned mask, unsigned count, bool along_x,
   unsigned& side = along_x ? x_ : y_;
   for (unsigned i = 0; i < count; ++i, ++side) {
     if ((mask >> i & 1) != 0) {
-      add(base_ns + wordTime_ns(), x_, y_, on_, events);
+      add(base_ns + wordTime(), x_, y_, on_, events);
     }
   }
   side &= kPayload;  // beyond any sensor, but within 16 bits
@@ -193,7 +193,7 @@ void EventPacketDecoder::decodeCompressed(const std::uint8_t* word, std::vector<
       x_ = payload & kSide;
       break;
     case kEventAtY:
-      add(packet_.time_base_ns + wordTime_ns(), x_, payload & kSide, (payload & kPolarity) != 0,
+      add(packet_.time_base_ns + wordTime(), x_, payload & kSide, (payload & kPolarity) != 0,
           events);
       break;
     case kFirstY:
@@ -255,10 +255,10 @@ void EventPacketDecoder::decodeEvt3(const std::uint8_t* word, std::vector<Event>
     return;  // the recording began in the middle: the camera tells its time soon
   }
   if (!evt3_offset_ns_) {
-    evt3_offset_ns_ = static_cast<std::uint64_t>(packet_.stamp_ns) - wordTime_ns();
+    evt3_offset_ns_ = static_cast<std::uint64_t>(packet_.stamp_ns) - wordTime();
   }
   if (code == kEvt3EventAtX) {
-    add(*evt3_offset_ns_ + wordTime_ns(), payload & kSide, y_, (payload & kPolarity) != 0, events);
+    add(*evt3_offset_ns_ + wordTime(), payload & kSide, y_, (payload & kPolarity) != 0, events);
   } else {
     addMask(payload, code == kEvt3Mask12 ? kLongMask : kShortMask, true, events);
   }

@@ -63,7 +63,7 @@ class EventPacketDecoder {
   void setEvt3High(std::uint64_t high);
   void addMask(unsigned mask, unsigned count, bool along_x, std::vector<Event>& events);
   void add(std::uint64_t t_ns, unsigned x, unsigned y, bool on, std::vector<Event>& events);
-  std::uint64_t wordTime_ns() const;
+  std::uint64_t wordTime() const;
 
   EventPacket packet_;
   Encoding encoding_ = Encoding::kLibcaer;

@@ -347,9 +347,8 @@ std::string McapStorage::loadChunk(const Record& record, std::vector<std::uint8_
     return "a chunk with the compression \"" + header->compression +
            "\", expected none, lz4 or zstd";
   }
-  const std::string fault =
-      decompressor_.run(*compression, bytes + header->header_bytes, size - header->header_bytes,
-                        kMaxMessageBytes, records);
+  std::string fault = decompressor_.run(*compression, bytes + header->header_bytes,
+                                        size - header->header_bytes, kMaxMessageBytes, records);
   if (!fault.empty()) {
     return fault;
   }
