@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <ros/console.h>
 
@@ -71,7 +72,7 @@ void deblur(const std::string& input, bool writes) {
   static_cast<void>(reader.duration());
   std::optional<fast_edi::BagWriter> writer;
   if (writes) {
-    writer.emplace(outputPath(), input, reader.compression(), true);
+    writer.emplace(outputPath(), std::vector<std::string>{input}, reader.compression(), true);
   }
   fast_edi::BagDeblurrer deblurrer(reader, writer ? &*writer : nullptr, topics, parameters(),
                                    [](std::uint64_t, std::uint64_t) {});
