@@ -10,13 +10,13 @@
 #include "fast_edi/exposure/stamp_limits.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "pictures/text_table.hpp"
+#include "recording/damage_notes.hpp"
 
 namespace fast_edi {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxNotes = 1000;
 /// Frames come no faster; 1000 times as slow is the next unit.
 constexpr double kLeastPeriod_ns = 2e6;
 constexpr std::size_t kAbsent = SIZE_MAX;
@@ -146,11 +146,7 @@ class ListReader {
   }
 
  private:
-  void note(std::uint64_t offset, const std::string& what) {
-    if (damage_.size() < kMaxNotes) {
-      damage_.push_back({offset, what});
-    }
-  }
+  void note(std::uint64_t offset, const std::string& what) { noteDamage(damage_, {offset, what}); }
 
   void readList(const std::string& path) {
     const std::string name = fs::path(path).filename().string();

@@ -11,7 +11,7 @@ namespace fast_edi {
 std::unique_ptr<Recording> openRecordingOrPictures(const std::string& path) {
   std::error_code ignored;  // what does not exist is no folder
   if (std::filesystem::is_directory(path, ignored) && hasFrameList(path)) {
-    return std::make_unique<PictureFolderReader>(path);
+    return openPictureFolder(path);
   }
   return openRecording(path);
 }

@@ -14,6 +14,8 @@
 namespace fast_edi {
 namespace {
 
+/// An item spans no more.
+constexpr std::int64_t kMaxItem_ns = 10 * kNanosecondsPerMillisecond;
 // Streams, in this order.
 constexpr std::size_t kFrames = 0;
 constexpr std::size_t kEvents = 1;
@@ -44,11 +46,9 @@ std::int64_t endOf(const ListedFrame& frame) {
   return frame.exposure ? frame.exposure->end_ns : frame.stamp_ns;
 }
 
-}  // namespace
-
-class PictureFolderReader::Impl {
+class PictureFolderReader : public Recording {
  public:
-  explicit Impl(const std::string& path) {
+  explicit PictureFolderReader(const std::string& path) {
     FrameList list = readFrameList(path);
     frames_ = std::move(list.frames);
     damage_ = std::move(list.damage);
@@ -75,7 +75,7 @@ class PictureFolderReader::Impl {
     }
   }
 
-  bool next(RecordingItem& item) {
+  bool next(RecordingItem& item) override {
     while (frame_ < frames_.size() || waiting_) {
       const bool frame_is_due =
           frame_ < frames_.size() && (!waiting_ || waiting_->t_ns >= endOf(frames_[frame_]));
@@ -86,12 +86,13 @@ class PictureFolderReader::Impl {
     return false;
   }
 
-  const std::vector<RecordedStream>& streams() const { return streams_; }
-  const std::vector<RecordingDamage>& damage() const { return damage_; }
-  std::uint64_t position() const { return frame_ + (events_ ? events_->position() : 0); }
-  std::uint64_t length() const { return frames_.size() + fileSize(); }
-  std::uint64_t fileSize() const { return events_ ? events_->size() : 0; }
-  bool knowsExposures() const {
+  std::string format() const override { return "pictures and text"; }
+  const std::vector<RecordedStream>& streams() const override { return streams_; }
+  const std::vector<RecordingDamage>& damage() const override { return damage_; }
+  std::uint64_t position() const override { return frame_ + (events_ ? events_->position() : 0); }
+  std::uint64_t length() const override { return frames_.size() + fileSize(); }
+  std::uint64_t fileSize() const override { return events_ ? events_->size() : 0; }
+  bool knowsExposures() const override {
     return std::all_of(frames_.begin(), frames_.end(),
                        [](const ListedFrame& frame) { return frame.exposure.has_value(); });
   }
@@ -156,33 +157,10 @@ class PictureFolderReader::Impl {
   std::int64_t record_ns_ = 0;
 };
 
-PictureFolderReader::PictureFolderReader(const std::string& path)
-    : impl_(std::make_unique<Impl>(path)) {}
-PictureFolderReader::~PictureFolderReader() = default;
+}  // namespace
 
-std::string PictureFolderReader::format() const {
-  return "pictures and text";
-}
-const std::vector<RecordedStream>& PictureFolderReader::streams() const {
-  return impl_->streams();
-}
-bool PictureFolderReader::next(RecordingItem& item) {
-  return impl_->next(item);
-}
-const std::vector<RecordingDamage>& PictureFolderReader::damage() const {
-  return impl_->damage();
-}
-std::uint64_t PictureFolderReader::position() const {
-  return impl_->position();
-}
-std::uint64_t PictureFolderReader::length() const {
-  return impl_->length();
-}
-std::uint64_t PictureFolderReader::fileSize() const {
-  return impl_->fileSize();
-}
-bool PictureFolderReader::knowsExposures() const {
-  return impl_->knowsExposures();
+std::unique_ptr<Recording> openPictureFolder(const std::string& path) {
+  return std::make_unique<PictureFolderReader>(path);
 }
 
 }  // namespace fast_edi

@@ -1,26 +1,27 @@
 #include "fast_edi/recording/aedat2_reader.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "fast_edi/exposure/stamp_limits.hpp"
+#include "fast_edi/recording/byte_source.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "recording/aps_frame.hpp"
+#include "recording/damage_notes.hpp"
 #include "recording/davis_geometry.hpp"
 
 namespace fast_edi {
 namespace {
 
-// Streams, in this order.
-constexpr std::size_t kEvents = 0;
-constexpr std::size_t kFrames = 1;
-constexpr std::size_t kImu = 2;
-
 constexpr std::size_t kRecordBytes = 8;
 constexpr std::size_t kBlockBytes = std::size_t{1} << 18;  ///< of whole records
+constexpr std::int64_t kMaxItem_us = 10'000;               ///< an item spans no more
 constexpr std::size_t kMaxHeaderBytes = std::size_t{4} << 20;
-constexpr std::size_t kMaxNotes = 1000;
 constexpr std::int64_t kMaxWraps = 1000;  ///< of 71 minutes; more is damage
 
 // Bits of an address.
@@ -52,27 +53,16 @@ std::uint32_t bigEndian(const std::uint8_t* data) {
          static_cast<std::uint32_t>(data[2]) << 8 | data[3];
 }
 
-}  // namespace
-
-class Aedat2Reader::Impl {
+class Aedat2Reader : public Recording {
  public:
-  explicit Impl(const std::string& path) : file_(path) {
+  explicit Aedat2Reader(const std::string& path) : file_(path) {
     const std::string camera = readHeader(path);
-    const std::optional<SensorSize> size = davisSize(camera);
-    if (!size) {
-      throw RecordingError(path + ": recorded by " +
-                           (camera.empty() ? "a camera that no line \"# AEChip: ...\" names"
-                                           : "\"" + camera + "\"") +
-                           ", expected a DAVIS240 or DAVIS346");
-    }
-    size_ = *size;
+    streams_ = davisStreams(path, camera, "# AEChip: ...");
+    size_ = streams_[kDavisEvents].size;
     frame_.emplace(size_);
-    streams_ = {{StreamKind::kEvents, "events", camera, size_},
-                {StreamKind::kFrames, "frames", camera, size_},
-                {StreamKind::kImu, "imu", camera, {}}};
   }
 
-  bool next(RecordingItem& item) {
+  bool next(RecordingItem& item) override {
     given_.clear();
     if (frame_->complete()) {
       frame_->clear();  // the one that was given last
@@ -108,17 +98,16 @@ class Aedat2Reader::Impl {
     return giveEvents(item);
   }
 
-  const std::vector<RecordedStream>& streams() const { return streams_; }
-  const std::vector<RecordingDamage>& damage() const { return damage_; }
-  std::uint64_t position() const { return offset_; }
-  std::uint64_t fileSize() const { return file_.size(); }
+  std::string format() const override { return "AEDAT2"; }
+  const std::vector<RecordedStream>& streams() const override { return streams_; }
+  const std::vector<RecordingDamage>& damage() const override { return damage_; }
+  std::uint64_t position() const override { return offset_; }
+  std::uint64_t length() const override { return file_.size(); }
+  std::uint64_t fileSize() const override { return file_.size(); }
+  bool knowsExposures() const override { return true; }
 
  private:
-  void note(std::uint64_t offset, const std::string& what) {
-    if (damage_.size() < kMaxNotes) {
-      damage_.push_back({offset, what});
-    }
-  }
+  void note(std::uint64_t offset, const std::string& what) { noteDamage(damage_, {offset, what}); }
 
   /// \return the camera that it names
   std::string readHeader(const std::string& path) {
@@ -249,7 +238,7 @@ class Aedat2Reader::Impl {
     }
     imu_complete_ = false;
     imu_.t_ns = t_ns;
-    item.stream = kImu;
+    item.stream = kDavisImu;
     item.record_ns = record_ns_;
     item.content = imu_;
     return true;
@@ -264,14 +253,14 @@ class Aedat2Reader::Impl {
     const std::vector<std::uint16_t>& pixels = frame_->pixels();
     frame.pixels = reinterpret_cast<const std::uint8_t*>(pixels.data());
     frame.bytes = pixels.size() * sizeof(pixels[0]);
-    item.stream = kFrames;
+    item.stream = kDavisFrames;
     item.record_ns = record_ns_;
     item.content = frame;
     return true;
   }
 
   bool giveEvents(RecordingItem& item) {
-    item.stream = kEvents;
+    item.stream = kDavisEvents;
     item.record_ns = record_ns_;
     item.content = RecordedEvents{given_.data(), given_.size()};
     return true;
@@ -314,26 +303,10 @@ class Aedat2Reader::Impl {
   bool ended_ = false;
 };
 
-Aedat2Reader::Aedat2Reader(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
-Aedat2Reader::~Aedat2Reader() = default;
+}  // namespace
 
-const std::vector<RecordedStream>& Aedat2Reader::streams() const {
-  return impl_->streams();
-}
-bool Aedat2Reader::next(RecordingItem& item) {
-  return impl_->next(item);
-}
-const std::vector<RecordingDamage>& Aedat2Reader::damage() const {
-  return impl_->damage();
-}
-std::uint64_t Aedat2Reader::position() const {
-  return impl_->position();
-}
-std::uint64_t Aedat2Reader::length() const {
-  return impl_->fileSize();
-}
-std::uint64_t Aedat2Reader::fileSize() const {
-  return impl_->fileSize();
+std::unique_ptr<Recording> openAedat2(const std::string& path) {
+  return std::make_unique<Aedat2Reader>(path);
 }
 
 }  // namespace fast_edi

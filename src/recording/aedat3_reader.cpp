@@ -2,23 +2,23 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "fast_edi/exposure/stamp_limits.hpp"
+#include "fast_edi/recording/byte_source.hpp"
 #include "fast_edi/recording/recording_error.hpp"
+#include "recording/damage_notes.hpp"
 #include "recording/davis_geometry.hpp"
 
 namespace fast_edi {
 namespace {
 
-// Streams, in this order.
-constexpr std::size_t kEvents = 0;
-constexpr std::size_t kFrames = 1;
-constexpr std::size_t kImu = 2;
-
 constexpr std::size_t kMaxHeaderBytes = std::size_t{4} << 20;
-constexpr std::size_t kMaxNotes = 1000;
 constexpr std::string_view kHeaderEnd = "#!END-HEADER";
 
 // Kinds of packets.
@@ -78,26 +78,15 @@ struct PacketHeader {
   }
 };
 
-}  // namespace
-
-class Aedat3Reader::Impl {
+class Aedat3Reader : public Recording {
  public:
-  explicit Impl(const std::string& path) : file_(path) {
+  explicit Aedat3Reader(const std::string& path) : file_(path) {
     const std::string camera = readHeader(path);
-    const std::optional<SensorSize> size = davisSize(camera);
-    if (!size) {
-      throw RecordingError(path + ": recorded by " +
-                           (camera.empty() ? "a camera that no line \"#Source 1: ...\" names"
-                                           : "\"" + camera + "\"") +
-                           ", expected a DAVIS240 or DAVIS346");
-    }
-    size_ = *size;
-    streams_ = {{StreamKind::kEvents, "events", camera, size_},
-                {StreamKind::kFrames, "frames", camera, size_},
-                {StreamKind::kImu, "imu", camera, {}}};
+    streams_ = davisStreams(path, camera, "#Source 1: ...");
+    size_ = streams_[kDavisEvents].size;
   }
 
-  bool next(RecordingItem& item) {
+  bool next(RecordingItem& item) override {
     for (;;) {
       if (left_ == 0 && !openPacket()) {
         return false;
@@ -108,17 +97,16 @@ class Aedat3Reader::Impl {
     }
   }
 
-  const std::vector<RecordedStream>& streams() const { return streams_; }
-  const std::vector<RecordingDamage>& damage() const { return damage_; }
-  std::uint64_t position() const { return offset_; }
-  std::uint64_t fileSize() const { return file_.size(); }
+  std::string format() const override { return "AEDAT3.1"; }
+  const std::vector<RecordedStream>& streams() const override { return streams_; }
+  const std::vector<RecordingDamage>& damage() const override { return damage_; }
+  std::uint64_t position() const override { return offset_; }
+  std::uint64_t length() const override { return file_.size(); }
+  std::uint64_t fileSize() const override { return file_.size(); }
+  bool knowsExposures() const override { return true; }
 
  private:
-  void note(std::uint64_t offset, const std::string& what) {
-    if (damage_.size() < kMaxNotes) {
-      damage_.push_back({offset, what});
-    }
-  }
+  void note(std::uint64_t offset, const std::string& what) { noteDamage(damage_, {offset, what}); }
 
   /// \return the camera that it names
   std::string readHeader(const std::string& path) {
@@ -255,7 +243,7 @@ class Aedat3Reader::Impl {
       events_.push_back(
           {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), *t_ns, (word & 2) != 0});
     }
-    item.stream = kEvents;
+    item.stream = kDavisEvents;
     item.record_ns = record_ns_;
     item.content = RecordedEvents{events_.data(), events_.size()};
     return !events_.empty();
@@ -293,7 +281,7 @@ class Aedat3Reader::Impl {
     frame.pixels = pixels_.data();
     frame.bytes = pixels_.size();
     record_ns_ = std::max({record_ns_, *end, frame_end.value_or(0)});
-    item.stream = kFrames;
+    item.stream = kDavisFrames;
     item.record_ns = record_ns_;
     item.content = frame;
     return true;
@@ -312,7 +300,7 @@ class Aedat3Reader::Impl {
       sample.angular_velocity[i] = numberAt<float>(data + 20 + 4 * i) * kRadiansPerDegree;
     }
     record_ns_ = std::max(record_ns_, *t_ns);
-    item.stream = kImu;
+    item.stream = kDavisImu;
     item.record_ns = record_ns_;
     item.content = sample;
     return true;
@@ -332,26 +320,10 @@ class Aedat3Reader::Impl {
   bool ended_ = false;
 };
 
-Aedat3Reader::Aedat3Reader(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
-Aedat3Reader::~Aedat3Reader() = default;
+}  // namespace
 
-const std::vector<RecordedStream>& Aedat3Reader::streams() const {
-  return impl_->streams();
-}
-bool Aedat3Reader::next(RecordingItem& item) {
-  return impl_->next(item);
-}
-const std::vector<RecordingDamage>& Aedat3Reader::damage() const {
-  return impl_->damage();
-}
-std::uint64_t Aedat3Reader::position() const {
-  return impl_->position();
-}
-std::uint64_t Aedat3Reader::length() const {
-  return impl_->fileSize();
-}
-std::uint64_t Aedat3Reader::fileSize() const {
-  return impl_->fileSize();
+std::unique_ptr<Recording> openAedat3(const std::string& path) {
+  return std::make_unique<Aedat3Reader>(path);
 }
 
 }  // namespace fast_edi

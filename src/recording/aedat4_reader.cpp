@@ -9,6 +9,7 @@
 #include "fast_edi/exposure/stamp_limits.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "recording/aedat4_header.hpp"
+#include "recording/damage_notes.hpp"
 #include "recording/flatbuffer.hpp"
 #include "recording/packet_compression.hpp"
 
@@ -51,7 +52,6 @@ constexpr std::size_t kPacketStartBytes = 12;
 constexpr std::uint32_t kLz4Magic = 0x184D2204;
 constexpr std::uint32_t kZstdMagic = 0xFD2FB528;
 /// More notes than this say nothing new.
-constexpr std::size_t kMaxNotes = 1000;
 constexpr int kMaxSide_px = std::numeric_limits<std::int16_t>::max();
 
 template <typename Number>
@@ -195,11 +195,7 @@ class Aedat4Reader::Impl {
   std::optional<BiasConfiguration> biases() const { return header_.biases; }
 
  private:
-  void note(std::uint64_t offset, const std::string& what) {
-    if (damage_.size() < kMaxNotes) {
-      damage_.push_back({offset, what});
-    }
-  }
+  void note(std::uint64_t offset, const std::string& what) { noteDamage(damage_, {offset, what}); }
 
   /// Whether the bytes at \p start can be the begin of a packet that ends by \p room.
   bool looksLikePacket(const std::uint8_t* start, std::uint64_t room) const {

@@ -2,6 +2,8 @@
 
 #include <cctype>
 
+#include "fast_edi/recording/recording_error.hpp"
+
 namespace fast_edi {
 
 std::optional<SensorSize> davisSize(const std::string& name) {
@@ -16,6 +18,20 @@ std::optional<SensorSize> davisSize(const std::string& name) {
     return SensorSize{346, 260};
   }
   return std::nullopt;
+}
+
+std::vector<RecordedStream> davisStreams(const std::string& path, const std::string& name,
+                                         const std::string& line) {
+  const std::optional<SensorSize> size = davisSize(name);
+  if (!size) {
+    throw RecordingError(
+        path + ": recorded by " +
+        (name.empty() ? "a camera that no line \"" + line + "\" names" : "\"" + name + "\"") +
+        ", expected a DAVIS240 or DAVIS346");
+  }
+  return {{StreamKind::kEvents, "events", name, *size},
+          {StreamKind::kFrames, "frames", name, *size},
+          {StreamKind::kImu, "imu", name, {}}};
 }
 
 }  // namespace fast_edi

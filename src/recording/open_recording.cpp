@@ -59,11 +59,11 @@ std::unique_ptr<Recording> openRecording(const std::string& path) {
     case RecordingFormat::kAedat4:
       return std::make_unique<Aedat4Reader>(path);
     case RecordingFormat::kAedat2:
-      return std::make_unique<Aedat2Reader>(path);
+      return openAedat2(path);
     case RecordingFormat::kAedat3:
-      return std::make_unique<Aedat3Reader>(path);
+      return openAedat3(path);
     case RecordingFormat::kRosbag2:
-      return std::make_unique<Rosbag2Reader>(path);
+      return openRosbag2(path);
     case RecordingFormat::kRosbag:
     case RecordingFormat::kUnknown:
       break;

@@ -11,6 +11,7 @@
 #include "fast_edi/exposure/stamp_limits.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "recording/cdr_reader.hpp"
+#include "recording/damage_notes.hpp"
 #include "recording/event_array_decoder.hpp"
 #include "recording/event_packet_decoder.hpp"
 #include "recording/file_decompression.hpp"
@@ -49,11 +50,9 @@ SensorSize sizeOf(std::uint32_t width, std::uint32_t height) {
              : SensorSize{};
 }
 
-}  // namespace
-
-class Rosbag2Reader::Impl {
+class Rosbag2Reader : public Recording {
  public:
-  explicit Impl(const std::string& path) : files_(findRosbag2Files(path)) {
+  explicit Rosbag2Reader(const std::string& path) : files_(findRosbag2Files(path)) {
     for (const std::string& fault : files_.faults) {
       addNote({0, fault});
     }
@@ -69,7 +68,7 @@ class Rosbag2Reader::Impl {
     file_->storage().rewind();
   }
 
-  bool next(RecordingItem& item) {
+  bool next(RecordingItem& item) override {
     for (;;) {
       if (giveEvents(item)) {
         return true;
@@ -84,17 +83,17 @@ class Rosbag2Reader::Impl {
     }
   }
 
-  std::string format() const { return format_; }
-  const std::vector<RecordedStream>& streams() const { return topics_.streams; }
-  const std::vector<RecordingDamage>& damage() const { return damage_; }
-  std::uint64_t position() const {
+  std::string format() const override { return format_; }
+  const std::vector<RecordedStream>& streams() const override { return topics_.streams; }
+  const std::vector<RecordingDamage>& damage() const override { return damage_; }
+  std::uint64_t position() const override {
     const double of_file = file_ ? file_->storage().progress() : 0.0;
     return static_cast<std::uint64_t>((static_cast<double>(file_index_) + of_file) * kStepsPerFile);
   }
-  std::uint64_t length() const {
+  std::uint64_t length() const override {
     return static_cast<std::uint64_t>(static_cast<double>(files_.paths.size()) * kStepsPerFile);
   }
-  std::uint64_t fileSize() const { return file_size_; }
+  std::uint64_t fileSize() const override { return file_size_; }
 
  private:
   struct Frame {
@@ -111,11 +110,7 @@ class Rosbag2Reader::Impl {
     std::optional<Frame> waiting;           ///< for its exposure; of the frames' topic
   };
 
-  void addNote(const RecordingDamage& damage) {
-    if (damage_.size() < Rosbag2Storage::kMaxNotes) {
-      damage_.push_back(damage);
-    }
-  }
+  void addNote(const RecordingDamage& damage) { noteDamage(damage_, damage); }
   void noteOf(const Rosbag2Message& message, const std::string& what) {
     addNote({message.offset, where() + topicOf(message).name + ": " + what});
   }
@@ -577,29 +572,10 @@ class Rosbag2Reader::Impl {
   std::vector<std::uint8_t> spare_pixels_;
 };
 
-Rosbag2Reader::Rosbag2Reader(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
-Rosbag2Reader::~Rosbag2Reader() = default;
+}  // namespace
 
-std::string Rosbag2Reader::format() const {
-  return impl_->format();
-}
-const std::vector<RecordedStream>& Rosbag2Reader::streams() const {
-  return impl_->streams();
-}
-bool Rosbag2Reader::next(RecordingItem& item) {
-  return impl_->next(item);
-}
-const std::vector<RecordingDamage>& Rosbag2Reader::damage() const {
-  return impl_->damage();
-}
-std::uint64_t Rosbag2Reader::position() const {
-  return impl_->position();
-}
-std::uint64_t Rosbag2Reader::length() const {
-  return impl_->length();
-}
-std::uint64_t Rosbag2Reader::fileSize() const {
-  return impl_->fileSize();
+std::unique_ptr<Recording> openRosbag2(const std::string& path) {
+  return std::make_unique<Rosbag2Reader>(path);
 }
 
 }  // namespace fast_edi

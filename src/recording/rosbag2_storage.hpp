@@ -11,6 +11,7 @@
 
 #include "fast_edi/recording/byte_source.hpp"
 #include "fast_edi/recording/recording.hpp"
+#include "recording/damage_notes.hpp"
 
 namespace fast_edi {
 
@@ -33,8 +34,6 @@ class Rosbag2Storage {
  public:
   /// Messages are no larger [bytes], compressed or not.
   static constexpr std::size_t kMaxMessageBytes = std::size_t{128} << 20;
-  /// More notes than this on damage say nothing new.
-  static constexpr std::size_t kMaxNotes = 1000;
 
   Rosbag2Storage() = default;
   virtual ~Rosbag2Storage() = default;
@@ -57,11 +56,7 @@ class Rosbag2Storage {
   const std::vector<RecordingDamage>& damage() const { return damage_; }
 
  protected:
-  void note(std::uint64_t offset, const std::string& what) {
-    if (damage_.size() < kMaxNotes) {
-      damage_.push_back({offset, what});
-    }
-  }
+  void note(std::uint64_t offset, const std::string& what) { noteDamage(damage_, {offset, what}); }
   /// What was noted so far belongs to opening the file.
   void keepNotes() { first_notes_ = damage_.size(); }
   virtual void restart() = 0;

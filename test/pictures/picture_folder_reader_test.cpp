@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <sstream>
 #include <tuple>
 
@@ -37,11 +38,11 @@ struct Content {
 };
 
 Content readAll(const std::string& path) {
-  PictureFolderReader reader(path);
+  const std::unique_ptr<Recording> reader = openPictureFolder(path);
   Content content;
   RecordingItem item;
   std::int64_t before_ns = 0;
-  while (reader.next(item)) {
+  while (reader->next(item)) {
     EXPECT_GE(item.record_ns, before_ns);
     before_ns = item.record_ns;
     if (const auto* events = std::get_if<RecordedEvents>(&item.content)) {
@@ -57,8 +58,8 @@ Content readAll(const std::string& path) {
           std::vector<std::uint8_t>(frame->pixels, frame->pixels + frame->bytes));
     }
   }
-  content.damage = reader.damage();
-  content.knows_exposures = reader.knowsExposures();
+  content.damage = reader->damage();
+  content.knows_exposures = reader->knowsExposures();
   return content;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -40,11 +41,11 @@ struct Content {
 };
 
 Content readAll(const std::string& path) {
-  Aedat2Reader reader(path);
+  const std::unique_ptr<Recording> reader = openAedat2(path);
   Content content;
   RecordingItem item;
   std::int64_t before_ns = 0;
-  while (reader.next(item)) {
+  while (reader->next(item)) {
     EXPECT_GE(item.record_ns, before_ns);
     before_ns = item.record_ns;
     if (const auto* events = std::get_if<RecordedEvents>(&item.content)) {
@@ -61,7 +62,7 @@ Content readAll(const std::string& path) {
       content.samples.push_back(*sample);
     }
   }
-  content.damage = reader.damage();
+  content.damage = reader->damage();
   return content;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -35,11 +36,11 @@ struct Content {
 };
 
 Content readAll(const std::string& path) {
-  Aedat3Reader reader(path);
+  const std::unique_ptr<Recording> reader = openAedat3(path);
   Content content;
   RecordingItem item;
   std::int64_t before_ns = 0;
-  while (reader.next(item)) {
+  while (reader->next(item)) {
     EXPECT_GE(item.record_ns, before_ns);
     before_ns = item.record_ns;
     if (const auto* events = std::get_if<RecordedEvents>(&item.content)) {
@@ -54,7 +55,7 @@ Content readAll(const std::string& path) {
       content.samples.push_back(*sample);
     }
   }
-  content.damage = reader.damage();
+  content.damage = reader->damage();
   return content;
 }
 

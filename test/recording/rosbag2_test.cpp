@@ -124,16 +124,16 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Rosbag2,
                          [](const auto& kind) { return std::string(kind.param); });
 
 TEST_P(Rosbag2, HasWhatWasRecorded) {
-  Rosbag2Reader reader(kData + "rosbag2/" + GetParam());
-  ASSERT_THAT(reader.streams(), SizeIs(3));
-  for (const RecordedStream& stream : reader.streams()) {
+  const std::unique_ptr<Recording> reader = openRosbag2(kData + "rosbag2/" + GetParam());
+  ASSERT_THAT(reader->streams(), SizeIs(3));
+  for (const RecordedStream& stream : reader->streams()) {
     EXPECT_EQ(stream.camera, "dvs");
     if (stream.kind != StreamKind::kCalibration) {
       EXPECT_EQ(stream.size, (SensorSize{48, 40}));
     }
   }
-  EXPECT_GT(reader.fileSize(), 20'000U);
-  const Content content = readAll(reader);
+  EXPECT_GT(reader->fileSize(), 20'000U);
+  const Content content = readAll(*reader);
   EXPECT_THAT(content.damage, IsEmpty());
   EXPECT_TRUE(content.times_in_order);
   EXPECT_THAT(content.events, SizeIs(2436));
@@ -212,9 +212,9 @@ TEST_F(Rosbag2Folder, OfSeveralFilesIsReadInTheOrderOfItsMetadata) {
   add("sqlite", "a.db3");
   writeMetadata("  relative_file_paths: [b.mcap, folder/a.db3]\n");
   EXPECT_EQ(formatOf(folder()), RecordingFormat::kRosbag2);
-  Rosbag2Reader reader(folder());
-  EXPECT_EQ(reader.format(), "rosbag2, MCAP, not compressed");
-  const Content content = readAll(reader);
+  const std::unique_ptr<Recording> reader = openRosbag2(folder());
+  EXPECT_EQ(reader->format(), "rosbag2, MCAP, not compressed");
+  const Content content = readAll(*reader);
   EXPECT_THAT(content.damage, IsEmpty());
   EXPECT_THAT(content.events, SizeIs(2 * 2436));
   EXPECT_THAT(content.frames, SizeIs(6));
@@ -224,9 +224,9 @@ TEST_F(Rosbag2Folder, OfSeveralFilesIsReadInTheOrderOfItsMetadata) {
 TEST_F(Rosbag2Folder, WithoutMetadataIsReadInTheOrderOfTheNumbersInItsNames) {
   add("sqlite", "r_10.db3");
   add("mcap_file", "r_2.mcap.zstd");
-  Rosbag2Reader reader(folder());
-  EXPECT_EQ(reader.format(), "rosbag2, MCAP, not compressed, compressed by file");
-  EXPECT_THAT(readAll(reader).events, SizeIs(2 * 2436));
+  const std::unique_ptr<Recording> reader = openRosbag2(folder());
+  EXPECT_EQ(reader->format(), "rosbag2, MCAP, not compressed, compressed by file");
+  EXPECT_THAT(readAll(*reader).events, SizeIs(2 * 2436));
 }
 
 TEST_F(Rosbag2Folder, NamesWhatIsMissing) {
@@ -265,9 +265,9 @@ TEST_F(Rosbag2Folder, OfWhichOneFileIsNoRecordingGivesTheOthers) {
 
 TEST_F(Rosbag2Folder, WithoutRecordingsIsRefused) {
   EXPECT_EQ(formatOf(folder()), RecordingFormat::kUnknown);
-  EXPECT_THROW(Rosbag2Reader{folder()}, RecordingError);
+  EXPECT_THROW(openRosbag2(folder()), RecordingError);
   writeMetadata("  relative_file_paths: []\n");
-  EXPECT_THROW(Rosbag2Reader{folder()}, RecordingError);
+  EXPECT_THROW(openRosbag2(folder()), RecordingError);
 }
 
 /// Runs SQL on a database.
@@ -320,7 +320,7 @@ TEST_F(Rosbag2Folder, WithOtherTablesIsRefused) {
       "CREATE VIEW messages AS WITH RECURSIVE m(id) AS (SELECT 1 UNION ALL SELECT id + 1 FROM m)"
       " SELECT id, 1 AS topic_id, id AS timestamp, 'x' AS data FROM m");
   sqlite3_close(database);
-  EXPECT_THROW(Rosbag2Reader{path}, RecordingError);
+  EXPECT_THROW(openRosbag2(path), RecordingError);
 }
 
 TEST_F(Rosbag2Folder, IsSurvivedWithAnySizesInItsHeads) {
@@ -353,10 +353,10 @@ TEST(RealRosbag2, OfADvxplorerIsWholeAcrossTheWrapOfItsClock) {
     std::cout << "FAST_EDI_RECORDINGS is not set: the package's own recordings alone\n";
     return;
   }
-  Rosbag2Reader reader(std::string(folder) + "/dvxplorer_rosbag2");
-  ASSERT_THAT(reader.streams(), SizeIs(1));
-  EXPECT_EQ(reader.streams()[0].size, (SensorSize{640, 480}));
-  const Content content = readAll(reader);
+  const std::unique_ptr<Recording> reader = openRosbag2(std::string(folder) + "/dvxplorer_rosbag2");
+  ASSERT_THAT(reader->streams(), SizeIs(1));
+  EXPECT_EQ(reader->streams()[0].size, (SensorSize{640, 480}));
+  const Content content = readAll(*reader);
   EXPECT_THAT(content.damage, IsEmpty());
   ASSERT_THAT(content.events, SizeIs(334'331));
   std::int64_t before_ns = std::get<0>(content.events.front());

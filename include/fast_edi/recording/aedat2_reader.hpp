@@ -14,41 +14,15 @@
 /// is that of the first column.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "fast_edi/recording/byte_source.hpp"
 #include "fast_edi/recording/recording.hpp"
 
 namespace fast_edi {
 
-class Aedat2Reader : public Recording {
- public:
-  /// More events come in several items.
-  static constexpr std::size_t kMaxItemEvents = 100'000;
-  /// An item spans no more.
-  static constexpr std::int64_t kMaxItem_us = 10'000;
-
-  /// \throws RecordingError when the file cannot be opened, or was recorded by a camera that is no
-  ///         DAVIS240 or DAVIS346
-  explicit Aedat2Reader(const std::string& path);
-  ~Aedat2Reader() override;
-
-  std::string format() const override { return "AEDAT2"; }
-  const std::vector<RecordedStream>& streams() const override;
-  bool next(RecordingItem& item) override;
-  const std::vector<RecordingDamage>& damage() const override;
-  std::uint64_t position() const override;
-  std::uint64_t length() const override;
-  std::uint64_t fileSize() const override;
-  bool knowsExposures() const override { return true; }
-
- private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
-};
+/// \throws RecordingError when the file cannot be opened, or was recorded by a camera that is no
+///         DAVIS240 or DAVIS346
+std::unique_ptr<Recording> openAedat2(const std::string& path);
 
 }  // namespace fast_edi

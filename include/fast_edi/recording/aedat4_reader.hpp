@@ -28,9 +28,6 @@ class Aedat4Reader : public Recording {
   static constexpr char kMagic[] = "#!AER-DAT4.0\r\n";
   /// Decompressed packets are no larger [bytes].
   static constexpr std::size_t kMaxPacketBytes = std::size_t{128} << 20;
-  /// More events of one packet come in several items.
-  static constexpr std::size_t kMaxItemEvents = 100'000;
-
   /// \throws RecordingError when the file cannot be opened, or its header does not tell how it is
   ///         to be read
   explicit Aedat4Reader(const std::string& path);

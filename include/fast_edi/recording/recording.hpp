@@ -76,6 +76,9 @@ struct RecordedCalibration {
   std::array<double, 12> projection = {};
 };
 
+/// More events of one place come in several items.
+constexpr std::size_t kMaxItemEvents = 100'000;
+
 /// What lies at one place of a recording. Pointers are valid until the next call of next().
 struct RecordingItem {
   std::size_t stream = 0;  ///< index into Recording::streams()

@@ -14,37 +14,15 @@
 /// only events.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "fast_edi/recording/recording.hpp"
 
 namespace fast_edi {
 
-class Rosbag2Reader : public Recording {
- public:
-  /// More events of one message come in several items.
-  static constexpr std::size_t kMaxItemEvents = 100'000;
-
-  /// \param path of the folder, of its metadata.yaml, or of one file with messages
-  /// \throws RecordingError when nothing at all can be read
-  explicit Rosbag2Reader(const std::string& path);
-  ~Rosbag2Reader() override;
-
-  std::string format() const override;
-  const std::vector<RecordedStream>& streams() const override;
-  bool next(RecordingItem& item) override;
-  const std::vector<RecordingDamage>& damage() const override;
-  std::uint64_t position() const override;
-  std::uint64_t length() const override;
-  std::uint64_t fileSize() const override;
-
- private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
-};
+/// \param path of the folder, of its metadata.yaml, or of one file with messages
+/// \throws RecordingError when nothing at all can be read
+std::unique_ptr<Recording> openRosbag2(const std::string& path);
 
 }  // namespace fast_edi
