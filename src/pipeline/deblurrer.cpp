@@ -51,6 +51,8 @@ class Deblurrer::Impl {
   DeblurStatus status() const;
 
  private:
+  void beforeEvents(std::size_t count, std::int64_t now_ns);
+  void afterEvents();
   void takeEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence);
   void takeEvents(const Event* events, std::size_t count, SensorSize size);
   void beforeBreak(StreamBreak kind, std::int64_t next_event_ns);
@@ -80,22 +82,26 @@ class Deblurrer::Impl {
 
 void Deblurrer::Impl::addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                                 std::int64_t now_ns) {
-  advance(now_ns);
-  if (!events.empty()) {
-    queue_.noteEvents();
-  }
+  beforeEvents(events.count, now_ns);
   takeEvents(events, size, sequence);
-  closeReady();
-  accumulate();
+  afterEvents();
 }
 
 void Deblurrer::Impl::addEvents(const Event* events, std::size_t count, SensorSize size,
                                 std::int64_t now_ns) {
+  beforeEvents(count, now_ns);
+  takeEvents(events, count, size);
+  afterEvents();
+}
+
+void Deblurrer::Impl::beforeEvents(std::size_t count, std::int64_t now_ns) {
   advance(now_ns);
   if (count > 0) {
     queue_.noteEvents();
   }
-  takeEvents(events, count, size);
+}
+
+void Deblurrer::Impl::afterEvents() {
   closeReady();
   accumulate();
 }
