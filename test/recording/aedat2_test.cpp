@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "fast_edi/recording/open_recording.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "recording/davis_geometry.hpp"
+#include "recording/recording_content.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace fast_edi {
@@ -31,39 +33,11 @@ const std::string kHeader =
     "# AEChip: eu.seebetter.ini.chips.davis.DAVIS240C\r\n#End Of ASCII Header\r\n";
 
 using EventRow = std::tuple<std::int64_t, int, int, bool>;
-
-struct Content {
-  std::vector<EventRow> events;
-  std::vector<RecordedFrame> frames;
-  std::vector<std::uint16_t> pixels;  ///< of the last frame
-  std::vector<RecordedImu> samples;
-  std::vector<RecordingDamage> damage;
-};
+using Content = testing::RecordingContent;
 
 Content readAll(const std::string& path) {
   const std::unique_ptr<Recording> reader = openAedat2(path);
-  Content content;
-  RecordingItem item;
-  std::int64_t before_ns = 0;
-  while (reader->next(item)) {
-    EXPECT_GE(item.record_ns, before_ns);
-    before_ns = item.record_ns;
-    if (const auto* events = std::get_if<RecordedEvents>(&item.content)) {
-      EXPECT_GT(events->count, 0u);
-      for (std::size_t i = 0; i < events->count; ++i) {
-        const Event& event = events->data[i];
-        content.events.emplace_back(event.t_ns, event.x, event.y, event.on);
-      }
-    } else if (const auto* frame = std::get_if<RecordedFrame>(&item.content)) {
-      content.frames.push_back(*frame);
-      const auto* pixels = reinterpret_cast<const std::uint16_t*>(frame->pixels);
-      content.pixels.assign(pixels, pixels + frame->bytes / 2);
-    } else if (const auto* sample = std::get_if<RecordedImu>(&item.content)) {
-      content.samples.push_back(*sample);
-    }
-  }
-  content.damage = reader->damage();
-  return content;
+  return testing::readAll(*reader);
 }
 
 /// Writes records with a bit layout of its own.
@@ -147,9 +121,12 @@ TEST_F(Aedat2, FramesAreResetMinusSignal) {
             (ExposureInterval{1239 * kMicrosecond, 9000 * kMicrosecond}));
   EXPECT_EQ(content.frames[0].size, kSize);
   EXPECT_EQ(content.frames[0].encoding, "mono16");
+  std::vector<std::uint16_t> pixels(kSize.pixelCount());
+  ASSERT_EQ(content.pixels.size(), 2 * pixels.size());
+  std::memcpy(pixels.data(), content.pixels.data(), content.pixels.size());
   for (int y = 0; y < kSize.height; ++y) {
     for (int x = 0; x < kSize.width; ++x) {
-      ASSERT_EQ(content.pixels[static_cast<std::size_t>(y * kSize.width + x)], levelAt(x, y) << 6);
+      ASSERT_EQ(pixels[static_cast<std::size_t>(y * kSize.width + x)], levelAt(x, y) << 6);
     }
   }
 }

@@ -12,6 +12,7 @@
 #include "fast_edi/recording/aedat3_reader.hpp"
 #include "fast_edi/recording/open_recording.hpp"
 #include "fast_edi/recording/recording_error.hpp"
+#include "recording/recording_content.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace fast_edi {
@@ -26,37 +27,11 @@ const std::string kHeader =
     "#!AER-DAT3.1\r\n#Format: RAW\r\n#Source 1: DAVIS346\r\n#!END-HEADER\r\n";
 
 using EventRow = std::tuple<std::int64_t, int, int, bool>;
-
-struct Content {
-  std::vector<EventRow> events;
-  std::vector<RecordedFrame> frames;
-  std::vector<std::uint8_t> pixels;  ///< of the last frame
-  std::vector<RecordedImu> samples;
-  std::vector<RecordingDamage> damage;
-};
+using Content = testing::RecordingContent;
 
 Content readAll(const std::string& path) {
   const std::unique_ptr<Recording> reader = openAedat3(path);
-  Content content;
-  RecordingItem item;
-  std::int64_t before_ns = 0;
-  while (reader->next(item)) {
-    EXPECT_GE(item.record_ns, before_ns);
-    before_ns = item.record_ns;
-    if (const auto* events = std::get_if<RecordedEvents>(&item.content)) {
-      for (std::size_t i = 0; i < events->count; ++i) {
-        const Event& event = events->data[i];
-        content.events.emplace_back(event.t_ns, event.x, event.y, event.on);
-      }
-    } else if (const auto* frame = std::get_if<RecordedFrame>(&item.content)) {
-      content.frames.push_back(*frame);
-      content.pixels.assign(frame->pixels, frame->pixels + frame->bytes);
-    } else if (const auto* sample = std::get_if<RecordedImu>(&item.content)) {
-      content.samples.push_back(*sample);
-    }
-  }
-  content.damage = reader->damage();
-  return content;
+  return testing::readAll(*reader);
 }
 
 template <typename Number>
