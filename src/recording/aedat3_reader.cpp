@@ -36,6 +36,8 @@ constexpr std::size_t kMaxFrameBytes = kFrameHeaderBytes + std::size_t{346} * 26
 
 constexpr std::uint32_t kValid = 1;
 constexpr int kOverflowShift = 31;  ///< times have 31 bits
+/// One more than what a ROS time (32 bits of seconds) can hold; their nanoseconds fit into 64 bits.
+constexpr std::int64_t kMaxOverflows = std::int64_t{1} << 21;
 constexpr double kGravity = 9.80665;
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
 
@@ -190,10 +192,13 @@ class Aedat3Reader : public Recording {
   /// Times of a packet's events; nothing for one that no stamp can tell.
   std::optional<std::int64_t> stampOf(const std::uint8_t* data) const {
     const auto t_us = numberAt<std::int32_t>(data);
+    // A larger count of overflows is no time of a camera, and its nanoseconds would not fit.
+    if (t_us < 0 || packet_.overflow >= kMaxOverflows) {
+      return std::nullopt;
+    }
     const std::int64_t t_ns =
         ((packet_.overflow << kOverflowShift) + t_us) * kNanosecondsPerMicrosecond;
-    return t_us >= 0 && packet_.overflow < (1 << 16) && isStamp(t_ns) ? std::optional(t_ns)
-                                                                      : std::nullopt;
+    return isStamp(t_ns) ? std::optional(t_ns) : std::nullopt;
   }
 
   /// \return whether \p item holds something
@@ -236,7 +241,7 @@ class Aedat3Reader : public Recording {
         note(offset + static_cast<std::uint64_t>(i) * kPolarityBytes,
              "an event at " + std::to_string(x) + ", " + std::to_string(y) +
                  ", expected one within " + std::to_string(size_.width) + "x" +
-                 std::to_string(size_.height) + " and a time that is not negative");
+                 std::to_string(size_.height) + " and a time from 0 to 2^32 s");
         continue;
       }
       record_ns_ = std::max(record_ns_, *t_ns);

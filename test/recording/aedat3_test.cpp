@@ -157,6 +157,8 @@ TEST_F(Aedat3, NamesWhatItDoesNotRead) {
   EXPECT_THAT(first_damage(packet(1, 8, 0, -1, "")), HasSubstr("-1 events"));
   EXPECT_THAT(first_damage(packet(1, 8, 0, 1, event(346, 0, true, 1))),
               HasSubstr("an event at 346, 0, expected one within 346x260"));
+  EXPECT_THAT(first_damage(packet(1, 8, INT32_MAX, 1, event(1, 2, true, INT32_MAX))),
+              HasSubstr("an event at 1, 2, expected one within 346x260 and a time from 0"));
   EXPECT_THAT(first_damage(packet(2, 48, 0, 1, frame(3, 2, 25, 13))),
               HasSubstr("whose exposure ends after its start"));
   EXPECT_THAT(first_damage(packet(2, 40, 0, 1, frame(3, 2, 13, 25).substr(0, 40))),
