@@ -24,9 +24,10 @@ sources_of_rooms(core_sources ${FAST_EDI_CORE_ROOMS})
 add_library(fast_edi_core ${core_sources})
 target_include_directories(fast_edi_core PUBLIC
   $<BUILD_INTERFACE:${FAST_EDI_ROOT}/include>
-  $<BUILD_INTERFACE:${FAST_EDI_ROOT}/src>
   $<INSTALL_INTERFACE:${CATKIN_GLOBAL_INCLUDE_DESTINATION}>)
-target_link_libraries(fast_edi_core Eigen3::Eigen)
+target_include_directories(fast_edi_core PRIVATE ${FAST_EDI_ROOT}/src)
+target_compile_features(fast_edi_core PUBLIC cxx_std_17)
+target_link_libraries(fast_edi_core PUBLIC Eigen3::Eigen)
 # Minima and maxima keep loops from being vectorised as long as their comparisons may have to raise
 # floating-point exceptions, which nothing here looks at. Results are the same.
 file(GLOB pixel_sources CONFIGURE_DEPENDS ${FAST_EDI_ROOT}/src/filters/*.cpp ${FAST_EDI_ROOT}/src/latent/*.cpp)

@@ -2,22 +2,22 @@
 
 namespace fast_edi {
 
-OverloadGuard::Advice OverloadGuard::update(std::int64_t now_ns, const Counts& counts) {
+OverloadGuard::Action OverloadGuard::update(std::int64_t now_ns, const Counts& counts) {
   if (!started_) {
     started_ = true;
     beginWindow(now_ns, counts);
-    return Advice::kGoOn;
+    return Action::kNone;
   }
   if (suspended_) {
     if (now_ns - since_ns_ < kPause_ns) {
-      return Advice::kGoOn;
+      return Action::kNone;
     }
     suspended_ = false;
     beginWindow(now_ns, counts);
-    return Advice::kResume;
+    return Action::kResume;
   }
   if (now_ns - since_ns_ < kWindow_ns) {
-    return Advice::kGoOn;
+    return Action::kNone;
   }
   const std::uint64_t events = counts.events - before_.events;
   const std::uint64_t lost = counts.events_lost - before_.events_lost;
@@ -28,11 +28,11 @@ OverloadGuard::Advice OverloadGuard::update(std::int64_t now_ns, const Counts& c
   overloaded_windows_ = frames_come && 2 * lost > events ? overloaded_windows_ + 1 : 0;
   beginWindow(now_ns, counts);
   if (overloaded_windows_ < kWindows) {
-    return Advice::kGoOn;
+    return Action::kNone;
   }
   overloaded_windows_ = 0;
   suspended_ = true;
-  return Advice::kSuspend;
+  return Action::kSuspend;
 }
 
 void OverloadGuard::beginWindow(std::int64_t now_ns, const Counts& counts) {

@@ -15,7 +15,7 @@ namespace fast_edi {
 
 class OverloadGuard {
  public:
-  enum class Advice { kGoOn, kSuspend, kResume };
+  enum class Action { kNone, kSuspend, kResume };
 
   static constexpr std::int64_t kWindow_ns = 250'000'000;
   /// So many windows in a row make an overload: a burst alone is what buffers are for.
@@ -34,7 +34,7 @@ class OverloadGuard {
   /// To be called every few milliseconds. Overload is when more than half of the events are lost
   /// and frames come that needed them: without frames, events are dropped as they grow old.
   /// \return kSuspend and kResume once each, in turn
-  Advice update(std::int64_t now_ns, const Counts& counts);
+  Action update(std::int64_t now_ns, const Counts& counts);
 
  private:
   void beginWindow(std::int64_t now_ns, const Counts& counts);

@@ -13,9 +13,11 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -75,6 +77,13 @@ Content readAll(Recording& recording) {
   EXPECT_EQ(recording.position(), recording.length());
   content.damage = recording.damage();
   return content;
+}
+
+bool isAnyNoteRepeated(const std::vector<RecordingDamage>& damage) {
+  std::set<std::pair<std::uint64_t, std::string>> notes;
+  return !std::all_of(damage.begin(), damage.end(), [&notes](const RecordingDamage& note) {
+    return notes.emplace(note.offset, note.what).second;
+  });
 }
 
 Content readAll(const std::string& path) {
@@ -164,6 +173,7 @@ TEST_P(Rosbag2, GivesWhatIsLeftOfACutFileAndSaysThatItIsCut) {
       const Content content = readAll(*recording);
       EXPECT_TRUE(content.times_in_order);
       EXPECT_THAT(content.damage, Not(IsEmpty())) << size << " of " << whole.size() << " bytes";
+      EXPECT_FALSE(isAnyNoteRepeated(content.damage)) << size << " bytes";
       EXPECT_LE(content.frames.size(), 3U);
       EXPECT_LE(content.events.size(), 2436U);
       most_events = std::max(most_events, content.events.size());

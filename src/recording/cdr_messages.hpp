@@ -1,0 +1,35 @@
+/// \file
+/// Messages of ROS 2 that are the same in every recording, field by field: sensor_msgs and the
+/// header that all begin with. Whoever calls these looks at CdrReader::ok() first: a message that
+/// ends within its fields is no other fault.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "fast_edi/recording/recording.hpp"
+#include "recording/cdr_reader.hpp"
+#include "recording/ros_image.hpp"
+
+namespace fast_edi {
+
+/// std_msgs/Header.
+/// \return its stamp [ns]
+std::int64_t readHeader(CdrReader& cdr);
+
+/// {0, 0} for an impossible size.
+SensorSize sizeOf(std::uint32_t width, std::uint32_t height);
+
+/// sensor_msgs/Image; the pixels stay where they are.
+/// \return its stamp [ns]
+std::int64_t readImage(CdrReader& cdr, RosImage& image);
+
+/// sensor_msgs/Imu.
+/// \return what is wrong; empty if nothing is
+std::string readImu(CdrReader& cdr, RecordedImu& sample);
+
+/// sensor_msgs/CameraInfo.
+/// \return what is wrong; empty if nothing is
+std::string readCalibration(CdrReader& cdr, RecordedCalibration& calibration);
+
+}  // namespace fast_edi
