@@ -1,0 +1,93 @@
+/// \file
+/// The pipeline for arrays: the Deblurrer behind a lock, with the latest time that came in as its
+/// clock, and a queue of what it has finished.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "fast_edi/base/frame_sink.hpp"
+#include "fast_edi/base/stored_image.hpp"
+#include "fast_edi/pipeline/deblurrer.hpp"
+#include "python/event_columns.hpp"
+#include "python/image_array.hpp"
+
+namespace fast_edi::python {
+
+struct LatentOutput {
+  std::int64_t stamp_ns = 0;
+  PixelBuffer image;
+};
+
+struct FrameOutput {
+  OutputFrame frame;  ///< its input image is gone
+  PixelBuffer image;
+  int dimensions = 2;  ///< of the input array
+  std::vector<LatentOutput> latent;
+};
+
+/// Keeps what it is given.
+class ArraySink : public FrameSink {
+ public:
+  explicit ArraySink(bool video) : video_(video) {}
+
+  MutableImageView begin(const InputFrame& input) override;
+  void finish(const OutputFrame& output) override;
+  bool wantsLatentImages() const override { return video_; }
+  MutableImageView beginLatent(const InputFrame& input) override;
+  void finishLatent(const InputFrame& input, std::int64_t stamp_ns) override;
+
+  std::deque<FrameOutput> take() { return std::exchange(outputs_, {}); }
+
+ private:
+  const bool video_;
+  PixelBuffer buffer_;
+  std::deque<FrameOutput> outputs_;
+};
+
+/// Calls may come from several threads, which take turns; none needs the interpreter's lock.
+class ArrayDeblurrer {
+ public:
+  /// \throws std::invalid_argument naming the parameter or size that is out of range
+  ArrayDeblurrer(SensorSize size, std::int64_t unit_ns, const DeblurParameters& parameters);
+
+  /// \throws as readEvents(); then none of the events was taken
+  void addEvents(const EventColumns& columns);
+  /// Copies the pixels, so that the caller can use the memory for its next frame.
+  /// \param exposure in units; nothing: not known
+  /// \throws std::invalid_argument naming the argument that cannot be used; then the frame was not
+  ///         taken
+  void addFrame(const ImageView& image, int dimensions, std::int64_t stamp,
+                std::optional<std::int64_t> exposure);
+  /// Events are complete from here on, though none may come for a while.
+  void beginAt(std::int64_t t);
+  /// Events are complete up to here, though none may have come for a while.
+  void endAt(std::int64_t t);
+  void finish();
+  std::deque<FrameOutput> take();
+
+  DeblurCounters counters();
+  DeblurStatus status();
+  std::int64_t unit() const { return unit_ns_; }
+
+ private:
+  void addMark(std::int64_t t_ns);
+  std::int64_t advanceTo(std::int64_t t_ns);
+
+  const SensorSize size_;
+  const std::int64_t unit_ns_;
+  std::mutex mutex_;  ///< guards all below
+  ArraySink sink_;
+  Deblurrer deblurrer_;
+  std::vector<Event> events_;
+  std::int64_t now_ns_ = 0;
+  std::optional<bool> exposures_given_;  ///< with the frames so far
+};
+
+}  // namespace fast_edi::python
