@@ -19,6 +19,7 @@ FAST_EDI_DEBIAN_BUILD=(
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
   libvisualization-msgs-dev libapriltag-dev libbz2-dev liblz4-dev libzstd-dev libtinyxml2-dev libsqlite3-dev
   libdlib-dev libblas-dev liblapack-dev libsvm-dev
+  pybind11-dev python3-dev python3-numpy
 )
 FAST_EDI_DEBIAN_RUN=(
   libnodeletlib-tools python3-roslaunch python3-rosbag python3-rostopic python3-sensor-msgs
@@ -28,6 +29,7 @@ FAST_EDI_DEBIAN_TEST=(
   python3-rostest libgtest-dev libgmock-dev catkin-lint clang-tidy clang-format doxygen libxml2-utils
   shellcheck
   clang
+  python3-pytest python3-pil python3-matplotlib mypy
 )
 # Before Debian 12 this comes with clang.
 FAST_EDI_DEBIAN_12_TEST=(libclang-rt-dev)
@@ -41,6 +43,7 @@ FAST_EDI_NOETIC_BUILD=(
   ros-noetic-pluginlib ros-noetic-sensor-msgs ros-noetic-std-msgs ros-noetic-visualization-msgs ros-noetic-apriltag
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
   libbz2-dev liblz4-dev libzstd-dev libtinyxml2-dev libsqlite3-dev libdlib-dev libblas-dev liblapack-dev libsvm-dev
+  pybind11-dev python3-dev python3-numpy
 )
 FAST_EDI_NOETIC_RUN=(
   ros-noetic-roslaunch ros-noetic-rostopic ros-noetic-rosbash ros-noetic-diagnostic-msgs
@@ -49,6 +52,7 @@ FAST_EDI_NOETIC_TEST=(
   ros-noetic-rostest libgtest-dev libgmock-dev python3-catkin-lint clang-tidy clang-format doxygen
   libxml2-utils shellcheck
   clang
+  python3-pytest python3-pil python3-matplotlib mypy
 )
 
 # fast_edi_heed_interrupts SCRIPT [ARGUMENT...]: starts a script anew where SIGINT is ignored, as it is

@@ -13,6 +13,8 @@ namespace {
 constexpr int kMaxSide_px = 32767;
 /// Longer than any ramp of the level model, so that what beginAt() adds reaches into no exposure.
 constexpr std::int64_t kBeforeStart_ns = 20 * kNanosecondsPerMillisecond;
+/// Refused, so that its frame has none and those behind it keep their own.
+constexpr std::int64_t kNoExposure_us = 0;
 
 /// What a frame's owner points to.
 struct OwnedFrame {
@@ -76,6 +78,14 @@ void ArrayDeblurrer::addEvents(const EventColumns& columns) {
   }
 }
 
+void ArrayDeblurrer::useRecordedExposures() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  DeblurParameters parameters = deblurrer_.parameters();
+  parameters.stamp_reference = ExposureInstant::kMid;
+  parameters.exposure_source = ExposureSource::kTopic;
+  deblurrer_.setParameters(parameters);
+}
+
 void ArrayDeblurrer::addFrame(const ImageView& image, int dimensions, std::int64_t stamp,
                               std::optional<std::int64_t> exposure) {
   const std::int64_t last_stamp = kLastStamp_ns / unit_ns_;
@@ -99,18 +109,11 @@ void ArrayDeblurrer::addFrame(const ImageView& image, int dimensions, std::int64
   frame.owner = owned;
 
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (exposures_given_ && *exposures_given_ != exposure.has_value()) {
-    throw std::invalid_argument(
-        std::string("exposure is ") + (exposure ? "given" : "None") +
-        ", expected the same as for the frames before: each has one, or none");
-  }
-  exposures_given_ = exposure.has_value();
   const std::int64_t now_ns = advanceTo(frame.stamp_ns);
   deblurrer_.addFrame(std::move(frame), now_ns);
-  if (exposure) {
-    const std::int64_t exposure_us = *exposure * unit_ns_ / kNanosecondsPerMicrosecond;
-    deblurrer_.addExposure(static_cast<std::int32_t>(exposure_us), now_ns);
-  }
+  const std::int64_t exposure_us =
+      exposure ? *exposure * unit_ns_ / kNanosecondsPerMicrosecond : kNoExposure_us;
+  deblurrer_.addExposure(static_cast<std::int32_t>(exposure_us), now_ns);
 }
 
 // A stream counts as complete between its events. These lie in no exposure.

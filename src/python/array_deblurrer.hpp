@@ -59,6 +59,8 @@ class ArrayDeblurrer {
 
   /// \throws as readEvents(); then none of the events was taken
   void addEvents(const EventColumns& columns);
+  /// Stamps are the middle of an exposure that comes with its frame, whatever the parameters say.
+  void useRecordedExposures();
   /// Copies the pixels, so that the caller can use the memory for its next frame.
   /// \param exposure in units; nothing: not known
   /// \throws std::invalid_argument naming the argument that cannot be used; then the frame was not
@@ -87,7 +89,6 @@ class ArrayDeblurrer {
   Deblurrer deblurrer_;
   std::vector<Event> events_;
   std::int64_t now_ns_ = 0;
-  std::optional<bool> exposures_given_;  ///< with the frames so far
 };
 
 }  // namespace fast_edi::python

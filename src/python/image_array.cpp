@@ -1,5 +1,6 @@
 #include "python/image_array.hpp"
 
+#include <new>
 #include <stdexcept>
 #include <utility>
 
@@ -73,6 +74,9 @@ ImageView imageView(py::array& array, bool bayer) {
   }
   if (!readableInPlace(array)) {
     array = py::array::ensure(array, py::array::c_style);
+    if (!array) {
+      throw std::bad_alloc();
+    }
   }
   view.data = static_cast<const std::uint8_t*>(array.data());
   view.size = {static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0))};

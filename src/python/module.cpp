@@ -2,9 +2,11 @@
 /// The Python module `fast_edi._fast_edi`: what `fast_edi/__init__.py` gives its names and
 /// documentation to.
 
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -156,28 +158,23 @@ py::object biases(const RecordingItems& items) {
   return result;
 }
 
-py::list damage(const RecordingItems& items) {
+py::list damage(RecordingItems& items) {
+  const std::vector<fast_edi::RecordingDamage> places = [&] {
+    const py::gil_scoped_release unlocked;
+    return items.damage();
+  }();
   py::list result;
-  for (const fast_edi::RecordingDamage& place : items.recording().damage()) {
+  for (const fast_edi::RecordingDamage& place : places) {
     result.append(py::make_tuple(place.offset, place.what));
   }
   return result;
 }
 
-std::string formatName(const std::string& path) {
-  switch (fast_edi::formatOf(path)) {
-    case fast_edi::RecordingFormat::kRosbag:
-      return "rosbag";
-    case fast_edi::RecordingFormat::kAedat4:
-      return "AEDAT4";
-    case fast_edi::RecordingFormat::kUnknown:
-      break;
-  }
-  return "";
-}
-
+/// Nothing for what the reader of rosbags, or no reader, takes.
 std::unique_ptr<RecordingItems> openItems(const std::string& path, std::int64_t unit_ns) {
-  return std::make_unique<RecordingItems>(fast_edi::openRecording(path), unit_ns);
+  const py::gil_scoped_release unlocked;
+  std::unique_ptr<fast_edi::Recording> recording = fast_edi::openRecording(path);
+  return recording ? std::make_unique<RecordingItems>(std::move(recording), unit_ns) : nullptr;
 }
 
 }  // namespace
@@ -197,16 +194,20 @@ PYBIND11_MODULE(_fast_edi, module) {
   });
 
   py::class_<ArrayDeblurrer>(module, "Deblurrer")
-      .def(py::init([](int width, int height, std::int64_t unit_ns, const std::string& config,
-                       const py::dict& parameters) {
-        return std::make_unique<ArrayDeblurrer>(
-            fast_edi::SensorSize{width, height}, unit_ns,
-            fast_edi::python::loadParameters(config, parameters).deblur);
+      .def(py::init([](int width, int height, std::int64_t unit_ns, int latent_rate_hz,
+                       const std::string& config, const py::dict& parameters) {
+        fast_edi::DeblurParameters deblur =
+            fast_edi::python::loadParameters(config, parameters).deblur;
+        deblur.latent.rate_hz = latent_rate_hz;
+        return std::make_unique<ArrayDeblurrer>(fast_edi::SensorSize{width, height}, unit_ns,
+                                                deblur);
       }))
       .def("add_events", &addEvents)
       .def("add_frame", &addFrame)
       .def("begin_at", &ArrayDeblurrer::beginAt, py::call_guard<py::gil_scoped_release>())
       .def("end_at", &ArrayDeblurrer::endAt, py::call_guard<py::gil_scoped_release>())
+      .def("use_recorded_exposures", &ArrayDeblurrer::useRecordedExposures,
+           py::call_guard<py::gil_scoped_release>())
       .def("finish", &ArrayDeblurrer::finish, py::call_guard<py::gil_scoped_release>())
       .def("take", &take)
       .def("counters", &counters)
@@ -217,9 +218,10 @@ PYBIND11_MODULE(_fast_edi, module) {
       .def("format", [](const RecordingItems& items) { return items.recording().format(); })
       .def("streams", &streams)
       .def("biases", &biases)
+      .def("knows_exposures",
+           [](const RecordingItems& items) { return items.recording().knowsExposures(); })
       .def("damage", &damage);
 
-  module.def("format_name", &formatName);
   module.def("open_recording", &openItems);
   module.def("contrast_from_biases", [](const std::string& path) {
     const fast_edi::ContrastThresholds thresholds = fast_edi::python::contrastFromBiases(path);

@@ -108,4 +108,9 @@ py::object RecordingItems::next() {
   return py::none();
 }
 
+std::vector<RecordingDamage> RecordingItems::damage() {
+  const std::lock_guard<std::mutex> turn(mutex_);
+  return recording_->damage();
+}
+
 }  // namespace fast_edi::python

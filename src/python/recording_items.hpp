@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include <pybind11/pybind11.h>
 
@@ -20,6 +21,7 @@ class RecordingItems {
   RecordingItems(std::unique_ptr<Recording> recording, std::int64_t unit_ns)
       : recording_(std::move(recording)), unit_ns_(unit_ns) {}
 
+  /// For what does not change while it is read.
   const Recording& recording() const { return *recording_; }
 
   /// (stream, kind, content) of the next item, None at the end; content by kind:
@@ -27,6 +29,9 @@ class RecordingItems {
   /// encoding); "imu": (t, acceleration, angular velocity). Other items are left out.
   /// Reads without the interpreter's lock.
   pybind11::object next();
+
+  /// So far. To be called without the interpreter's lock.
+  std::vector<RecordingDamage> damage();
 
  private:
   std::mutex mutex_;

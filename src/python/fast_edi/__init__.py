@@ -35,7 +35,7 @@ _FIELDS = (("x", ("x",)), ("y", ("y",)), ("t", ("t", "timestamp", "ts")), ("p", 
 
 
 class LatentImage(NamedTuple):
-    """One image of the high-rate video (parameters latent_images, latent_rate_hz)."""
+    """One image of the high-rate video (parameter latent_images, or latent_rate_hz)."""
 
     stamp: int
     image: Array
@@ -88,11 +88,13 @@ class Deblurrer:
     """Events and frames in as they come, one result for each frame out."""
 
     def __init__(self, sensor_size: tuple[int, int], config: Path | None = None, *,
-                 time_unit: str = "us", **parameters: Any) -> None:
+                 time_unit: str = "us", latent_rate_hz: int = 0, **parameters: Any) -> None:
         """
         sensor_size: (width, height) of the event pixels [px]
         config: a YAML file such as those in cfg/
         time_unit: "us" or "ns"
+        latent_rate_hz: latent images at all multiples of 1 / latent_rate_hz, where events tell them;
+            0: as many for each exposure as the parameter latent_images says
         parameters: keys of the YAML files, replacing those of `config`; without either, only
             contrast_threshold_on and contrast_threshold_off [natural log], or biases, must be given
 
@@ -100,10 +102,11 @@ class Deblurrer:
         `config` cannot be read.
         """
         try:
-            width, height = (_integer("sensor_size", side) for side in sensor_size)
+            width, height = (_integer("sensor_size", side, bits=32) for side in sensor_size)
         except (TypeError, ValueError):
             raise TypeError(f"sensor_size is {sensor_size!r}, expected (width, height)") from None
         self._deblurrer = _fast_edi.Deblurrer(width, height, _unit_ns(time_unit),
+                                              _integer("latent_rate_hz", latent_rate_hz, bits=32),
                                               _readable("config", config) if config is not None else "",
                                               parameters)
 
@@ -130,8 +133,8 @@ class Deblurrer:
         image: uint8 or uint16 of shape (height, width), or (height, width, 3 or 4)
         stamp: the instant of the exposure that the parameter stamp_reference names (default: its
             middle), in time_unit
-        exposure: its length in time_unit, 1 us to 1 s; None for all frames if it is not known, or
-            given by the parameter exposure_time_us
+        exposure: its length in time_unit, 1 us to 1 s; None if it is not known, or the same for
+            all frames, as the parameter exposure_time_us says
         bayer: each element of `image` is a photosite of a colour mosaic
 
         A frame that cannot be deblurred, for instance because its size is not the sensor's, comes
@@ -152,7 +155,12 @@ class Deblurrer:
             yield Result(*values, [LatentImage(*image) for image in latent])
 
     def run(self, recording: Recording) -> Iterator[Result]:
-        """The results of a whole recording, which must have the same time_unit."""
+        """The results of a whole recording, which must have the same time_unit.
+
+        Where the recording has the exposure of each frame, stamp_reference and exposure_source are not
+        used."""
+        if recording.knows_exposures:
+            self._deblurrer.use_recorded_exposures()
         for item in recording:
             if isinstance(item, Frame):
                 if item.image is not None:
@@ -255,6 +263,8 @@ class Recording:
             if mine:
                 # A camera's own frames come before those that programs made of its events.
                 self._streams.add(min(mine)[1])
+        self.knows_exposures = recording.knows_exposures()
+        """The recording has the exposure of each frame, whose middle is then the frame's stamp."""
         self.biases = recording.biases()
         """Of the camera, where they were recorded: for Deblurrer(biases=...)."""
 
@@ -273,25 +283,26 @@ class Recording:
 
 def open(path: Path, *, time_unit: str = "us") -> Recording:
     """
-    Opens a recording by its content: AEDAT4, and rosbags where the module was built with ROS.
+    Opens a recording by its content: AEDAT4, AEDAT3.1, AEDAT2 and rosbag2 (ROS 2); rosbags of ROS 1 and
+    folders of pictures with text where the module was built with ROS.
 
-    Raises OSError when the file cannot be read, ValueError when it is no recording that is read.
+    Raises OSError when it cannot be read, ValueError when it is no recording that is read.
     """
-    name = _readable("path", path)
+    name = _readable("path", path, folder=True)
     unit_ns = _unit_ns(time_unit)
-    found = _fast_edi.format_name(name)
-    if found == "AEDAT4":
-        return Recording(_fast_edi.open_recording(name, unit_ns), name)
-    if found == "rosbag":
+    recording = _fast_edi.open_recording(name, unit_ns)
+    missing = ""
+    if recording is None:
         try:
             from . import _bags
         except ImportError as error:
-            raise ValueError(
-                f"{name} is a rosbag, which only the catkin package reads ({error}): import the module "
-                "from a catkin workspace, or turn the bag into AEDAT4 by convert_recording") from error
-        return Recording(_bags.open_bag(name, unit_ns), name)
-    raise ValueError(f'{name} is no recording that is read: it begins neither with "#ROSBAG V2.0" '
-                     '(rosbag) nor with "#!AER-DAT4.0" (AEDAT4)')
+            missing = f"; rosbags of ROS 1 and folders of pictures need the catkin package ({error})"
+        else:
+            recording = _bags.open_recording(name, unit_ns)
+    if recording is None:
+        raise ValueError(f"{name} is no recording that is read: it is neither AEDAT4, AEDAT3.1, AEDAT2 "
+                         f"nor rosbag2, nor a rosbag or folder of pictures with text{missing}")
+    return Recording(recording, name)
 
 
 def contrast_from_biases(path: Path) -> tuple[float, float]:
@@ -311,21 +322,24 @@ def _unit_ns(time_unit: str) -> int:
     return _UNITS_NS[time_unit]
 
 
-def _integer(name: str, value: Any) -> int:
+def _integer(name: str, value: Any, bits: int = 64) -> int:
     try:
         result = operator.index(value)
     except TypeError:
         raise TypeError(f"{name} is {value!r}, expected an integer") from None
-    if abs(result) >= 2**63:
-        raise ValueError(f"{name} is {value!r}, expected an integer of 64 bits")
+    if abs(result) >= 2**(bits - 1):
+        raise ValueError(f"{name} is {value!r}, expected an integer of {bits} bits")
     return result
 
 
-def _readable(name: str, path: Any) -> str:
+def _readable(name: str, path: Any, folder: bool = False) -> str:
     try:
         text = os.fspath(path)
     except TypeError:
         raise TypeError(f"{name} is {path!r}, expected a path") from None
+    if folder and os.path.isdir(text):
+        os.listdir(text)  # as below
+        return os.fsdecode(text)
     with os.fdopen(os.open(text, os.O_RDONLY), "rb") as file:
         file.read(1)  # raises OSError for what cannot be read, a folder included
     return os.fsdecode(text)

@@ -1,70 +1,17 @@
-"""The Python module against deblur_bag, and what it does with input that cannot be used."""
+"""The Python module: arrays in and out, and what it does with input that cannot be used."""
 import os
-import pathlib
 import subprocess
 import sys
+import threading
 
 import numpy
 import pytest
+from conftest import ROOT
 
 import fast_edi
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-DEMO = ROOT / "bags" / "demo.bag"
 CONTRAST = {"contrast_threshold_on": 0.25, "contrast_threshold_off": 0.25}
 SIZE = (16, 12)
-
-MODES = {
-    "default": {},
-    "plain": {"filter": False},
-    "reference end": {"reference": "end"},
-    "counter": {"weighting": "counter"},
-    "video": {"latent_images": 3},
-}
-
-
-@pytest.fixture(scope="module")
-def tool():
-    """The program deblur_bag of the space that the module is imported from."""
-    space = next(folder for folder in pathlib.Path(fast_edi.__file__).resolve().parents
-                 if (folder / "lib" / "fast_edi").is_dir())
-    return space / "lib" / "fast_edi" / "deblur_bag"
-
-
-def text(value):
-    return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-def images(path, topic):
-    """(stamp [ns], pixels) of each image of a topic."""
-    rosbag = pytest.importorskip("rosbag")
-    with rosbag.Bag(str(path)) as bag:
-        return [(message.header.stamp.to_nsec(),
-                 numpy.frombuffer(message.data, numpy.uint8).reshape(message.height, message.width))
-                for _, message, _ in bag.read_messages(topics=[topic])]
-
-
-@pytest.mark.parametrize("mode", MODES)
-def test_bits_of_deblur_bag(mode, tool, tmp_path):
-    parameters = {**CONTRAST, **MODES[mode]}
-    out = tmp_path / "out.bag"
-    subprocess.run([tool, "--in", DEMO, "--out", out,
-                    *(f"{key}:={text(value)}" for key, value in parameters.items())],
-                   check=True, stdout=subprocess.DEVNULL)
-    recording = fast_edi.open(DEMO, time_unit="ns")
-    results = list(fast_edi.Deblurrer(recording.sensor_size, time_unit="ns",
-                                      **parameters).run(recording))
-    expected = images(out, "/dvs/deblurred/image_raw")
-    assert [result.stamp for result in results] == [stamp for stamp, _ in expected]
-    assert sum(result.deblurred for result in results) > 20
-    for result, (_, image) in zip(results, expected):
-        assert numpy.array_equal(result.image, image)
-    latent = [image for result in results for image in result.latent]
-    expected = images(out, "/dvs/latent/image_raw")
-    assert [image.stamp for image in latent] == [stamp for stamp, _ in expected]
-    assert bool(latent) == (mode == "video")
-    for image, (_, pixels) in zip(latent, expected):
-        assert numpy.array_equal(image.image, pixels)
 
 
 def test_package_of_dynamic_reconfigure_is_beside():
@@ -209,8 +156,24 @@ def test_bad_frames_are_named_and_nothing_is_taken(name):
     assert deblurrer.counters["frames_in"] == 0
     deblurrer.add_frame(frame(), 1_007_000, 10_000)
     assert [result.deblurred for result in deblurrer.results()] == [True]
-    with pytest.raises(ValueError, match="exposure is None, expected the same"):
-        deblurrer.add_frame(frame(), 1_017_000)
+
+
+def test_frames_without_exposure():
+    """They have that of the frame before, and do not take that of the one behind."""
+    deblurrer = fast_edi.Deblurrer(SIZE, **CONTRAST)
+    deblurrer.add_frame(frame(), 1_001_000)
+    deblurrer.add_events(*events())
+    for stamp, exposure in ((1_004_000, 4_000), (1_008_000, None), (1_014_000, 6_000)):
+        deblurrer.add_frame(frame(), stamp, exposure)
+    assert [result.exposure for result in deblurrer.results()] == [
+        None, (1_002_000, 1_006_000), (1_006_000, 1_010_000), (1_011_000, 1_017_000)]
+
+
+def test_exposure_by_parameter():
+    deblurrer = fast_edi.Deblurrer(SIZE, exposure_time_us=4000, **CONTRAST)
+    deblurrer.add_events(*events())
+    deblurrer.add_frame(frame(), 1_008_000)
+    assert [result.exposure for result in deblurrer.results()] == [(1_006_000, 1_010_000)]
 
 
 def test_frames_of_another_size_pass_through():
@@ -245,8 +208,10 @@ def test_bad_sizes_are_named(size):
 def test_files_that_cannot_be_opened(tmp_path):
     with pytest.raises(FileNotFoundError):
         fast_edi.open(tmp_path / "none.aedat4")
-    with pytest.raises(IsADirectoryError):
+    with pytest.raises(ValueError, match="AEDAT4"):
         fast_edi.open(tmp_path)
+    with pytest.raises(IsADirectoryError):
+        fast_edi.Deblurrer(SIZE, tmp_path)
     other = tmp_path / "other"
     other.write_bytes(b"nothing")
     with pytest.raises(ValueError, match="AEDAT4"):
