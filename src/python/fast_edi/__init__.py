@@ -151,8 +151,9 @@ class Deblurrer:
     def results(self) -> Iterator[Result]:
         """What was finished since the last call, in order. A frame is finished by the first event
         behind its exposure, by close_timeout_ms (of the times that come in) or by finish()."""
-        for (*values, latent) in self._deblurrer.take():
-            yield Result(*values, [LatentImage(*image) for image in latent])
+        for image, stamp, input_stamp, deblurred, reason, exposure, events, latent in self._deblurrer.take():
+            yield Result(image, stamp, input_stamp, deblurred, reason, exposure, events,
+                         [LatentImage(*item) for item in latent])
 
     def run(self, recording: Recording) -> Iterator[Result]:
         """The results of a whole recording, which must have the same time_unit.
@@ -217,10 +218,10 @@ def deblur(image: Any, events: Any, exposure_start: int, exposure_end: int,
                         ("contrast_threshold_off", contrast_threshold_off)):
         if value is not None:
             parameters[name] = value
-    for name, value in (("stamp_reference", "start"), ("exposure_source", "topic")):
+    for name, setting in (("stamp_reference", "start"), ("exposure_source", "topic")):
         if name in parameters:
             raise ValueError(f"{name} is given, but deblur() is told the exposure itself")
-        parameters[name] = value
+        parameters[name] = setting
     pixels = _native("image", image)
     if pixels.ndim < 2:
         raise ValueError(f"image has the shape {pixels.shape}, expected (height, width)")
