@@ -21,6 +21,7 @@ void readAs(const IntegerColumn& column, std::size_t begin, std::size_t count, B
   for (std::size_t i = 0; i < count; ++i, item += column.stride) {
     Integer value = 0;
     std::memcpy(&value, item, sizeof(value));  // items of packed records are not aligned
+    // A number, not a letter. NOLINTNEXTLINE(bugprone-signed-char-misuse)
     block[i] = static_cast<std::int64_t>(value);
   }
 }

@@ -86,7 +86,11 @@ ImageView imageView(py::array& array, bool bayer) {
 
 PixelBuffer makeBuffer(SensorSize size, PixelFormat format) {
   const std::size_t bytes = size.pixelCount() * static_cast<std::size_t>(bytesPerPixel(format));
-  return {std::make_unique<std::vector<std::uint8_t>>(bytes), size, format};
+  PixelBuffer buffer;
+  buffer.bytes = std::make_unique<std::vector<std::uint8_t>>(bytes);
+  buffer.size = size;
+  buffer.format = format;
+  return buffer;
 }
 
 MutableImageView viewOf(PixelBuffer& buffer) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pybind11/numpy.h>
@@ -184,7 +185,7 @@ PYBIND11_MODULE(_fast_edi, module) {
   py::register_exception_translator([](std::exception_ptr error) {
     try {
       if (error) {
-        std::rethrow_exception(error);
+        std::rethrow_exception(std::move(error));
       }
     } catch (const fast_edi::ParameterError& fault) {
       PyErr_SetString(PyExc_ValueError, fault.what());
