@@ -90,14 +90,20 @@ bool BagRecording::take(const BagMessage& message, RecordingItem& item) {
   item.record_ns = record_ns_;
   if (topic == topics_.events) {
     const auto array = deserialise<EventArrayView>(message);
+    if (sequence_gaps_.step(array->header.seq) == SequenceStep::kGap) {
+      lost_arrays_ += sequence_gaps_.missing();
+    }
     const WireEvents events = array->events();
     events_.resize(events.count);
     for (std::size_t i = 0; i < events.count; ++i) {
       events_[i] = decodeWireEvent(events.record(i));
     }
     item.stream = kEvents;
-    item.content = RecordedEvents{events_.data(), events_.size()};
-    return !events_.empty();
+    if (events_.empty()) {
+      return false;
+    }
+    item.content = RecordedEvents{events_.data(), events_.size(), std::exchange(lost_arrays_, 0)};
+    return true;
   }
   if (topic == topics_.image) {
     sensor_msgs::ImagePtr image = deserialise<sensor_msgs::Image>(message);

@@ -70,11 +70,13 @@ std::int64_t ArrayDeblurrer::advanceTo(std::int64_t t_ns) {
   return now_ns_;
 }
 
-void ArrayDeblurrer::addEvents(const EventColumns& columns) {
+void ArrayDeblurrer::addEvents(const EventColumns& columns, std::uint32_t lost_arrays) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  readEvents(columns, size_, unit_ns_, events_);
-  if (!events_.empty()) {
-    deblurrer_.addEvents(events_.data(), events_.size(), size_, advanceTo(events_.back().t_ns));
+  const WireEvents events = readEvents(columns, size_, unit_ns_, records_);
+  if (!events.empty()) {
+    const std::int64_t last_ns = decodeWireEvent(events.record(events.count - 1)).t_ns;
+    sequence_ += lost_arrays + 1;
+    deblurrer_.addEvents(events, size_, sequence_, advanceTo(last_ns));
   }
 }
 

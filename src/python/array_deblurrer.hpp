@@ -57,8 +57,9 @@ class ArrayDeblurrer {
   /// \throws std::invalid_argument naming the parameter or size that is out of range
   ArrayDeblurrer(SensorSize size, std::int64_t unit_ns, const DeblurParameters& parameters);
 
+  /// \param lost_arrays that came before these, but not to here
   /// \throws as readEvents(); then none of the events was taken
-  void addEvents(const EventColumns& columns);
+  void addEvents(const EventColumns& columns, std::uint32_t lost_arrays);
   /// Stamps are the middle of an exposure that comes with its frame, whatever the parameters say.
   void useRecordedExposures();
   /// Copies the pixels, so that the caller can use the memory for its next frame.
@@ -87,8 +88,9 @@ class ArrayDeblurrer {
   std::mutex mutex_;  ///< guards all below
   ArraySink sink_;
   Deblurrer deblurrer_;
-  std::vector<Event> events_;
+  std::vector<std::uint8_t> records_;  ///< memory for the events of a call
   std::int64_t now_ns_ = 0;
+  std::uint32_t sequence_ = 0;  ///< number of the last event array
 };
 
 }  // namespace fast_edi::python

@@ -10,6 +10,7 @@
 #include <pybind11/numpy.h>
 
 #include "fast_edi/base/types.hpp"
+#include "fast_edi/events/event_wire.hpp"
 
 namespace fast_edi::python {
 
@@ -38,11 +39,12 @@ struct EventColumns {
 /// Each number is read once, so that another thread that writes to the arrays changes events, but
 /// cannot get past the checks. Needs no lock of the interpreter.
 /// \param unit_ns of the times
-/// \param events overwritten
+/// \param records memory for the events; grows where they do not fit
+/// \return all events, within \p records
 /// \throws std::invalid_argument naming the argument, the index, what was found and what was
 ///         expected: equal lengths, pixels on the sensor, times that are stamps and never decrease,
 ///         polarity 0 or 1 (or -1 and 1)
-void readEvents(const EventColumns& columns, SensorSize size, std::int64_t unit_ns,
-                std::vector<Event>& events);
+WireEvents readEvents(const EventColumns& columns, SensorSize size, std::int64_t unit_ns,
+                      std::vector<std::uint8_t>& records);
 
 }  // namespace fast_edi::python

@@ -87,7 +87,7 @@ ImageView imageView(py::array& array, bool bayer) {
 PixelBuffer makeBuffer(SensorSize size, PixelFormat format) {
   const std::size_t bytes = size.pixelCount() * static_cast<std::size_t>(bytesPerPixel(format));
   PixelBuffer buffer;
-  buffer.bytes = std::make_unique<std::vector<std::uint8_t>>(bytes);
+  buffer.bytes.reset(new std::uint8_t[bytes]);  // not set to zero: all of them will be written
   buffer.size = size;
   buffer.format = format;
   return buffer;
@@ -95,7 +95,7 @@ PixelBuffer makeBuffer(SensorSize size, PixelFormat format) {
 
 MutableImageView viewOf(PixelBuffer& buffer) {
   const auto pixel_bytes = static_cast<std::size_t>(bytesPerPixel(buffer.format));
-  return {buffer.bytes->data(), buffer.size,
+  return {buffer.bytes.get(), buffer.size,
           static_cast<std::size_t>(buffer.size.width) * pixel_bytes, buffer.format};
 }
 
@@ -106,10 +106,9 @@ py::array toArray(PixelBuffer buffer, int dimensions) {
   }
   const py::dtype type = bytesPerSample(buffer.format) == 2 ? py::dtype::of<std::uint16_t>()
                                                             : py::dtype::of<std::uint8_t>();
-  std::vector<std::uint8_t>* const bytes = buffer.bytes.release();
-  const py::capsule owner(
-      bytes, [](void* owned) { delete static_cast<std::vector<std::uint8_t>*>(owned); });
-  return py::array(type, shape, bytes->data(), owner);
+  std::uint8_t* const bytes = buffer.bytes.release();
+  const py::capsule owner(bytes, [](void* owned) { delete[] static_cast<std::uint8_t*>(owned); });
+  return py::array(type, shape, bytes, owner);
 }
 
 }  // namespace fast_edi::python

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <pybind11/numpy.h>
 
@@ -23,7 +22,7 @@ ImageView imageView(pybind11::array& array, bool bayer);
 
 /// Pixels without padding that become an array without being copied again.
 struct PixelBuffer {
-  std::unique_ptr<std::vector<std::uint8_t>> bytes;
+  std::unique_ptr<std::uint8_t[]> bytes;
   SensorSize size;
   PixelFormat format = PixelFormat::kMono8;
 };

@@ -30,12 +30,12 @@ using fast_edi::python::ArrayDeblurrer;
 using fast_edi::python::RecordingItems;
 
 void addEvents(ArrayDeblurrer& deblurrer, const py::array& x, const py::array& y,
-               const py::array& t, const py::array& p) {
+               const py::array& t, const py::array& p, std::uint32_t lost_arrays) {
   using fast_edi::python::integerColumn;
   const fast_edi::python::EventColumns columns = {integerColumn("x", x), integerColumn("y", y),
                                                   integerColumn("t", t), integerColumn("p", p)};
   const py::gil_scoped_release unlocked;
-  deblurrer.addEvents(columns);
+  deblurrer.addEvents(columns, lost_arrays);
 }
 
 void addFrame(ArrayDeblurrer& deblurrer, py::array image, std::int64_t stamp,
@@ -97,6 +97,7 @@ py::dict counters(ArrayDeblurrer& deblurrer) {
   result["events_glitched"] = counters.events_glitched;
   result["events_overflowed"] = counters.events_overflowed;
   result["event_arrays"] = counters.event_arrays;
+  result["event_arrays_missing"] = counters.event_arrays_missing;
   result["event_time_jumps"] = counters.event_time_jumps;
   result["frames_in"] = counters.frames_in;
   result["frames_deblurred"] = counters.frames_deblurred;

@@ -95,7 +95,8 @@ py::object RecordingItems::next() {
   while (recording_->next(item)) {
     const py::gil_scoped_acquire locked;
     if (const auto* events = std::get_if<RecordedEvents>(&item.content)) {
-      return py::make_tuple(item.stream, "events", eventArray(*events, unit_ns_));
+      return py::make_tuple(item.stream, "events",
+                            py::make_tuple(eventArray(*events, unit_ns_), events->lost_arrays));
     }
     if (const auto* frame = std::get_if<RecordedFrame>(&item.content)) {
       return py::make_tuple(item.stream, "frame", frameTuple(*frame, unit_ns_));

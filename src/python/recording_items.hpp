@@ -25,9 +25,9 @@ class RecordingItems {
   const Recording& recording() const { return *recording_; }
 
   /// (stream, kind, content) of the next item, None at the end; content by kind:
-  /// "events": structured array with x, y, t, p; "frame": (image, stamp, exposure or None,
-  /// encoding); "imu": (t, acceleration, angular velocity). Other items are left out.
-  /// Reads without the interpreter's lock.
+  /// "events": (structured array with x, y, t, p; arrays lost before); "frame": (image, stamp,
+  /// exposure or None, encoding); "imu": (t, acceleration, angular velocity). Other items are left
+  /// out. Reads without the interpreter's lock.
   pybind11::object next();
 
   /// So far. To be called without the interpreter's lock.

@@ -82,6 +82,17 @@ def test_recorded_exposures_come_before_parameters(simulated, tools, tmp_path):
                                            "exposure_source": "parameter"}, tools, tmp_path)
 
 
+def test_lost_event_arrays(tools, tmp_path):
+    path = tmp_path / "simulated.bag"
+    subprocess.run([tools / "simulate_davis", "--out", path, "--frames", "6", "--width", "64", "--height", "48",
+                    "--exposure-us", "35000", "--fault", "dropped-arrays=1"], check=True, stdout=subprocess.DEVNULL)
+    recording = fast_edi.open(path)
+    deblurrer = fast_edi.Deblurrer(recording.sensor_size, **CONTRAST)
+    reasons = [result.pass_reason for result in deblurrer.run(recording) if not result.deblurred]
+    assert reasons == ["events missing in the exposure"]
+    assert deblurrer.counters["event_arrays_missing"] == 1
+
+
 def test_folders_of_pictures(simulated, tools, tmp_path):
     folder = tmp_path / "pictures"
     subprocess.run([tools / "convert_recording", simulated, folder], check=True,

@@ -15,6 +15,7 @@
 
 #include "fast_edi/bags/message_source.hpp"
 #include "fast_edi/bags/topic_names.hpp"
+#include "fast_edi/events/sequence_gaps.hpp"
 #include "fast_edi/recording/recording.hpp"
 
 namespace fast_edi {
@@ -52,6 +53,8 @@ class BagRecording : public Recording {
   sensor_msgs::ImagePtr waiting_;  ///< for its exposure
   sensor_msgs::ImagePtr given_;
   std::vector<Event> events_;
+  SequenceGaps sequence_gaps_;
+  std::uint32_t lost_arrays_ = 0;  ///< since the last events that were given
   std::int64_t record_ns_ = 0;
   std::uint64_t malformed_ = 0;
 };

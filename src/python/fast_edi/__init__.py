@@ -110,7 +110,8 @@ class Deblurrer:
                                               _readable("config", config) if config is not None else "",
                                               parameters)
 
-    def add_events(self, x: Any, y: Any = None, t: Any = None, p: Any = None) -> None:
+    def add_events(self, x: Any, y: Any = None, t: Any = None, p: Any = None, *,
+                   lost_arrays: int = 0) -> None:
         """
         Takes events in the order of time, origin top left.
 
@@ -120,10 +121,16 @@ class Deblurrer:
         event older than those of earlier calls is dropped and counted (counters["events_late"]),
         unless the clock has been set back: see max_backward_jump_ms.
 
+        lost_arrays: arrays that lie before these, but did not arrive: frames that need their events are
+            passed through
+
         Raises TypeError or ValueError for unequal lengths, pixels outside of the sensor, times that
         decrease within the arrays and other polarities.
         """
-        self._deblurrer.add_events(*_columns("x", x, y, t, p))
+        lost = _integer("lost_arrays", lost_arrays, bits=32)
+        if lost < 0:
+            raise ValueError(f"lost_arrays is {lost_arrays}, expected 0 or more")
+        self._deblurrer.add_events(*_columns("x", x, y, t, p), lost)
 
     def add_frame(self, image: Any, stamp: int, exposure: int | None = None, *,
                   bayer: bool = False) -> None:
@@ -168,7 +175,7 @@ class Deblurrer:
                     self.add_frame(item.image, item.stamp, item.exposure,
                                    bayer=item.encoding.startswith("bayer"))
             elif not isinstance(item, ImuSample):
-                self.add_events(item)
+                self.add_events(item, lost_arrays=recording.lost_arrays)
             yield from self.results()
         self.finish()
         yield from self.results()
@@ -230,7 +237,7 @@ def deblur(image: Any, events: Any, exposure_start: int, exposure_end: int,
     first = int(columns[2][0]) if columns[2].ndim == 1 and columns[2].size else start
     inner = deblurrer._deblurrer
     inner.begin_at(max(0, min(first, start)))
-    inner.add_events(*columns)
+    inner.add_events(*columns, 0)
     deblurrer.add_frame(pixels, start, exposure, bayer=bayer)
     inner.end_at(start + exposure)
     deblurrer.finish()
@@ -264,6 +271,8 @@ class Recording:
             if mine:
                 # A camera's own frames come before those that programs made of its events.
                 self._streams.add(min(mine)[1])
+        self.lost_arrays = 0
+        """Arrays right before the last events that the recorder did not get, as far as it tells."""
         self.knows_exposures = recording.knows_exposures()
         """The recording has the exposure of each frame, whose middle is then the frame's stamp."""
         self.biases = recording.biases()
@@ -272,9 +281,13 @@ class Recording:
     def __iter__(self) -> Iterator[Array | Frame | ImuSample]:
         while (item := self._recording.next()) is not None:
             stream, kind, content = item
-            if stream in self._streams:
-                yield (content if kind == "events" else
-                       Frame(*content) if kind == "frame" else ImuSample(*content))
+            if stream not in self._streams:
+                continue
+            if kind == "events":
+                events, self.lost_arrays = content
+                yield events
+            else:
+                yield Frame(*content) if kind == "frame" else ImuSample(*content)
 
     @property
     def damage(self) -> list[tuple[int, str]]:
