@@ -55,7 +55,7 @@ FAST_EDI_NOETIC_TEST=(
   python3-pytest python3-pil python3-matplotlib mypy
 )
 
-# fast_edi_heed_interrupts SCRIPT [ARGUMENT...]: starts a script anew where SIGINT is ignored, as it is
+# fast_edi_heed_interrupts SCRIPT [ARGUMENT...]: restarts a script where SIGINT is ignored, as it is
 # for what a shell runs in the background. ROS ends processes by SIGINT, and those in Python would go
 # on ignoring it. A shell cannot undo that itself.
 fast_edi_heed_interrupts() {

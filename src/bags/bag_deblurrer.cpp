@@ -49,7 +49,7 @@ void printSummary(std::ostream& out, const BagDeblurReport& report) {
   out << "  " << std::setw(10) << counters.events_in << "  in " << counters.event_arrays
       << " arrays\n";
   printCount(out, counters.event_array_gaps, "holes in the arrays' sequence numbers");
-  printCount(out, counters.event_restarts, "times that the arrays' publisher started anew");
+  printCount(out, counters.event_restarts, "restarts of the arrays' publisher");
   printCount(out, counters.events_late, "dropped: older than those before");
   printCount(out, counters.events_outside, "dropped: not on the sensor");
   printCount(out, counters.events_glitched, "dropped: an unconfirmed jump of time");

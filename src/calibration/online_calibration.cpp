@@ -38,14 +38,14 @@ constexpr std::size_t kLeastPixels = 50;
 constexpr double kContrastRidge = 100.0;
 /// ... or, for the delay, by one natural-log unit per millisecond each.
 constexpr double kDelayRidge = 0.1;
-/// What is not to be learned is tied to its nominal value.
-constexpr double kTied = 1e12;
+/// Fixes what is not to be learned at its nominal value.
+constexpr double kFixedRidge = 1e12;
 /// Weight of what was learned before, each time a pair is added.
 constexpr double kForgetting = 0.9;
 constexpr double kLargestCorrection = 0.3;  ///< of a threshold, relative to nominal
 constexpr double kLargestDelay_ms = 5.0;    ///< of the events, in the mean
-/// Pairs of frames tell a threshold no better than to a few per cent. Of a correction, nothing is
-/// taken up to kDoubtfulCorrection, all from kSureCorrection on, relative to nominal.
+/// Pairs of frames determine a threshold no better than to a few per cent. Of a correction, nothing
+/// is used up to kDoubtfulCorrection, all of it from kSureCorrection on, relative to nominal.
 constexpr double kDoubtfulCorrection = 0.06;
 constexpr double kSureCorrection = 0.1;
 /// ln 2: behind a first-order low-pass of time constant tau, events are late by tau in the mean,
@@ -54,7 +54,7 @@ constexpr double kSureCorrection = 0.1;
 /// from clocks that differ, and such a shift is taken whole.
 constexpr double kEdgeDelayPerMeanDelay = 0.693147180559945;
 
-/// Smaller changes are not taken over, so that most pairs of frames were closed alike.
+/// Smaller changes are ignored, so that most pairs of frames are integrated with equal values.
 constexpr double kNoticeableCorrection = 0.01;  ///< of a threshold, relative
 constexpr std::int64_t kNoticeableDelay_ns = 50 * kNanosecondsPerMicrosecond;
 
@@ -93,7 +93,7 @@ double limited(double value, double lowest, double highest) {
   return std::min(std::max(value, lowest), highest);
 }
 
-/// What is taken over of a threshold that was found.
+/// The threshold in force for one that was found.
 double correctedThreshold(double found, double nominal) {
   const double correction = limited(found / nominal - 1.0, -kLargestCorrection, kLargestCorrection);
   const double sure =
@@ -137,7 +137,7 @@ CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraR
       if (fit(band, pair) >= kLeastPixels) {
         learned_.matrix = kForgetting * learned_.matrix + pair.matrix;
         learned_.vector = kForgetting * learned_.vector + pair.vector;
-        takeOver();
+        updateInForce();
         ++fits_;
         outcome = CalibrationOutcome::kFitted;
       }
@@ -148,8 +148,8 @@ CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraR
   previous_reference_ns_ = frame.reference_ns;
   if (outcome == CalibrationOutcome::kFitted) {
     useless_pairs_ = 0;
-    resting_ = std::max(resting_, fits_ >= kEagerFits ? kRestFrames : 0);
-  } else if (outcome != CalibrationOutcome::kNoPair && ++useless_pairs_ >= kPatience) {
+    resting_ = std::max(resting_, fits_ >= kInitialFits ? kRestFrames : 0);
+  } else if (outcome != CalibrationOutcome::kNoPair && ++useless_pairs_ >= kMaxUselessPairs) {
     resting_ = std::max(resting_, kRestFrames);
   }
   // No pair: the next frame is not needed, or will be closed otherwise than this one.
@@ -299,9 +299,9 @@ std::size_t OnlineCalibration::fit(const Band& band, NormalEquations& equations)
 }
 
 /// Solves what was learned so far for the calibration.
-void OnlineCalibration::takeOver() {
-  const double contrast_ridge = settings_.contrast ? kContrastRidge : kTied;
-  const double delay_ridge = settings_.delay ? kDelayRidge : kTied;
+void OnlineCalibration::updateInForce() {
+  const double contrast_ridge = settings_.contrast ? kContrastRidge : kFixedRidge;
+  const double delay_ridge = settings_.delay ? kDelayRidge : kFixedRidge;
   const Eigen::Vector3d ridge(contrast_ridge, contrast_ridge, delay_ridge);
   const Eigen::Vector3d nominal(nominal_.on, nominal_.off, 0.0);
   const Eigen::Matrix3d matrix = learned_.matrix + Eigen::Matrix3d(ridge.asDiagonal());

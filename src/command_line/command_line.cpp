@@ -15,7 +15,7 @@ namespace {
 
 namespace po = boost::program_options;
 
-/// More notes than this help nobody.
+/// More notes than this are of no use.
 constexpr std::size_t kMaxDamageNotes = 10;
 constexpr const char* kWord = "word";
 

@@ -51,7 +51,7 @@ std::optional<boost::program_options::variables_map> readCommandLine(
     int argc, char** argv, const boost::program_options::options_description& options,
     const HelpText& text, std::vector<std::string>* words);
 
-/// Tells recordings and name:=value apart.
+/// Separates recordings from name:=value.
 void sortWords(const std::vector<std::string>& words, std::vector<std::string>& recordings,
                std::vector<std::string>& overrides);
 
@@ -68,7 +68,7 @@ void requireFree(const std::string& path, bool overwrite);
 LoadedParameters loadParameters(const std::string& config,
                                 const std::vector<std::string>& overrides);
 
-/// Parameters for a recording that may tell some of them itself: biases become thresholds unless
+/// Parameters for a recording that may contain some of them itself: biases become thresholds unless
 /// those are given, and measured exposures are used as they are.
 /// \throws ParameterError
 LoadedParameters loadParametersFor(const MessageSource& recording, const std::string& config,

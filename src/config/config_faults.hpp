@@ -18,7 +18,7 @@ class ConfigFaults {
   /// \param where the node at fault: its line is named when it comes from a file
   void add(const YAML::Node& where, const std::string& text);
 
-  /// Takes over the lines of \p others as they are.
+  /// Adds the lines of \p others.
   void append(const ConfigFaults& others);
 
   bool empty() const { return lines_.empty(); }

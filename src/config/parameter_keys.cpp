@@ -137,7 +137,7 @@ ConfigKey latentImagesKey() {
       });
 }
 
-/// A key whose value Deblurrer::setParameters() takes over from one frame to the next.
+/// A key whose value Deblurrer::setParameters() can change between two frames.
 ConfigKey live(ConfigKey key) {
   key.description.live = true;
   return key;

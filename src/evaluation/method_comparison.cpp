@@ -30,7 +30,7 @@ class SearchingEdi {
         options_(options),
         stream_({parameters.max_buffered_events, parameters.max_backward_jump_ns,
                  parameters.max_forward_jump_ns},
-                counters_, [](StreamBreak, std::int64_t) {}) {}
+                counters_, [](StreamReset, std::int64_t) {}) {}
 
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence) {
     const auto start = Clock::now();
@@ -64,7 +64,7 @@ class SearchingEdi {
     std::vector<float> gain(size.pixelCount());
     const auto latent = [&](double contrast) {
       DoubleIntegral integral(size, {contrast, contrast}, Weighting::kTime);
-      integral.close(*stream_.lists(), window, reference_ns, gain.data());
+      integral.integrate(*stream_.lists(), window, reference_ns, gain.data());
       cv::Mat image(blurry.size(), CV_8UC1);
       parameters_.response.applyGain(viewOf(blurry), gain.data(), mutableViewOf(image));
       return image;

@@ -31,8 +31,9 @@ void printRuntimeTable(std::ostream& out, const EvaluationGroup& group);
 
 struct ReportText {
   std::string title;
-  std::string command;             ///< how the report was made
-  std::vector<std::string> notes;  ///< what the reader must know, e.g. measures not to be had
+  std::string command;  ///< how the report was made
+  std::vector<std::string>
+      notes;  ///< what the reader must know, e.g. measures that are not available
 };
 
 /// Makes room for a report, so that no folder holds parts of two.

@@ -23,21 +23,21 @@ constexpr std::uint16_t kOneLess = 0xFFFF;  // modulo 65536
 
 }  // namespace
 
-void EventCounts::forget() {
+void EventCounts::reset() {
   std::fill(counts_.begin(), counts_.end(), std::uint16_t{0});
   begin_ = 0;
   end_ = 0;
 }
 
-void EventCounts::follow(const PixelEventLists& lists, const ExposureInterval& window) {
+void EventCounts::accumulate(const PixelEventLists& lists, const ExposureInterval& window) {
   moveTo(lists, lists.lowerBound(window.start_ns), lists.lowerBound(window.end_ns));
 }
 
-void EventCounts::close(const PixelEventLists& lists, const ExposureInterval& window) {
+void EventCounts::count(const PixelEventLists& lists, const ExposureInterval& window) {
   moveTo(lists, lists.lowerBound(window.start_ns), lists.lowerBound(window.end_ns));
 }
 
-/// Mends the counted range to [begin, end), or starts anew where that is less work or where events
+/// Moves the counted range to [begin, end), or restarts where that is less work or where events
 /// that would have to be taken away are gone from the log.
 void EventCounts::moveTo(const PixelEventLists& lists, std::uint64_t begin, std::uint64_t end) {
   const std::uint64_t common_begin = std::max(begin, begin_);
@@ -46,7 +46,7 @@ void EventCounts::moveTo(const PixelEventLists& lists, std::uint64_t begin, std:
   const std::uint64_t surplus = (end_ - begin_) - common;
   const bool gone = surplus > 0 && begin_ < lists.beginSequence();
   if (gone || surplus > end - begin) {
-    forget();
+    reset();
   }
   if (begin_ == end_) {
     begin_ = begin;

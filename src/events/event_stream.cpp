@@ -25,8 +25,8 @@ bool isValid(SensorSize size) {
 }  // namespace
 
 EventStream::EventStream(PixelEventLists::Limits limits, DeblurCounters& counters,
-                         BreakHandler before_break)
-    : limits_(limits), counters_(counters), before_break_(std::move(before_break)) {}
+                         ResetHandler before_reset)
+    : limits_(limits), counters_(counters), before_reset_(std::move(before_reset)) {}
 
 void EventStream::take(const WireEvents& events, SensorSize size,
                        std::optional<std::uint32_t> sequence) {
@@ -53,7 +53,7 @@ void EventStream::take(const WireEvents& events, SensorSize size,
     return;
   }
   for (int jumps = 0; !held_.empty() && jumps < kMostHeldJumps; ++jumps) {
-    decideHeld(timeOf(events, 0));
+    resolveHeldJump(timeOf(events, 0));
   }
   dropHeld();
   markMissingArrays();  // once more: there may be a new epoch
@@ -96,17 +96,17 @@ void EventStream::setSize(SensorSize size, const WireEvents& next) {
     const std::int64_t next_ns = timeOf(next, 0);
     // The clock goes on, so nothing is missing up to the new array, unless the array's time is odd.
     if (!coverage_.holeOpen() && next_ns - lists_->newest() <= limits_.max_forward_jump_ns) {
-      announced_ns_ = next_ns;
+      next_event_ns_ = next_ns;
     }
-    before_break_(StreamBreak::kSizeChange, next_ns);
-    announced_ns_ = INT64_MIN;
+    before_reset_(StreamReset::kSizeChange, next_ns);
+    next_event_ns_ = INT64_MIN;
   }
   flush();
   lists_->reset(size, limits_);
 }
 
 /// \param next_array_ns time of the first event of the array that decides
-void EventStream::decideHeld(std::int64_t next_array_ns) {
+void EventStream::resolveHeldJump(std::int64_t next_array_ns) {
   const WireEvents held = viewOf(held_);
   if (!held_jump_.continues(timeOf(held, held.count - 1), next_array_ns)) {
     dropHeld();
@@ -171,7 +171,7 @@ void EventStream::noteAccepted(std::uint64_t sequence) {
 
 void EventStream::beginEpoch(std::int64_t first_event_ns) {
   ++counters_.event_time_jumps;
-  before_break_(StreamBreak::kTimeJump, first_event_ns);
+  before_reset_(StreamReset::kTimeJump, first_event_ns);
   flush();
 }
 
@@ -217,7 +217,7 @@ void EventStream::discardBefore(std::int64_t t_ns) {
 }
 
 bool EventStream::hasReached(std::int64_t t_ns) const {
-  return (lists_ && lists_->hasNewest() && lists_->newest() >= t_ns) || announced_ns_ >= t_ns;
+  return (lists_ && lists_->hasNewest() && lists_->newest() >= t_ns) || next_event_ns_ >= t_ns;
 }
 
 bool EventStream::isPast(std::int64_t t_ns) const {

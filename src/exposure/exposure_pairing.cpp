@@ -37,7 +37,7 @@ void ExposurePairing::addImage(std::uint64_t image, std::int64_t now_ns,
     first_image_ns_ = now_ns;
   }
   advance(now_ns, matches);
-  if (deaf_) {
+  if (without_messages_) {
     matches.push_back({image, std::nullopt});
     return;
   }
@@ -51,16 +51,16 @@ void ExposurePairing::addImage(std::uint64_t image, std::int64_t now_ns,
     matches.push_back({image, messages_.front().length_ns});
     messages_.pop_front();
   }
-  watch(now_ns);
+  updateUnmatched(now_ns);
 }
 
 void ExposurePairing::addMessage(std::int32_t exposure_us, std::int64_t now_ns,
                                  std::vector<ExposureMatch>& matches) {
   advance(now_ns, matches);
   const std::optional<std::int64_t> length_ns = read(exposure_us);
-  heard_ = true;
-  if (deaf_) {
-    deaf_ = false;
+  any_received_ = true;
+  if (without_messages_) {
+    without_messages_ = false;
     return;
   }
   if (images_.empty()) {
@@ -73,33 +73,34 @@ void ExposurePairing::addMessage(std::int32_t exposure_us, std::int64_t now_ns,
     images_.pop_front();
     ahead_since_ns_.reset();
   }
-  watch(now_ns);
+  updateUnmatched(now_ns);
 }
 
 void ExposurePairing::advance(std::int64_t now_ns, std::vector<ExposureMatch>& matches) {
-  if (!heard_ && !deaf_ && first_image_ns_ && now_ns - *first_image_ns_ >= timeout_ns_) {
-    deaf_ = true;
+  if (!any_received_ && !without_messages_ && first_image_ns_ &&
+      now_ns - *first_image_ns_ >= timeout_ns_) {
+    without_messages_ = true;
     dropImages(images_.size(), matches);
-    watchAnew(now_ns);
+    restartUnmatched(now_ns);
   }
   const auto expired = [&](const auto& waiting) {
     return !waiting.empty() && now_ns - waiting.front().arrival_ns >= timeout_ns_;
   };
   while (expired(images_)) {
     dropImages(1, matches);
-    watchAnew(now_ns);
+    restartUnmatched(now_ns);
   }
   while (expired(messages_)) {
     dropMessages(1);
-    watchAnew(now_ns);
+    restartUnmatched(now_ns);
   }
-  if (least_unmatched_ > 0 && now_ns - unmatched_since_ns_ >= timeout_ns_) {
+  if (min_unmatched_ > 0 && now_ns - unmatched_since_ns_ >= timeout_ns_) {
     if (messages_.empty()) {
-      dropImages(least_unmatched_, matches);
+      dropImages(min_unmatched_, matches);
     } else {
-      dropMessages(least_unmatched_);
+      dropMessages(min_unmatched_);
     }
-    watchAnew(now_ns);
+    restartUnmatched(now_ns);
   }
 }
 
@@ -111,10 +112,10 @@ void ExposurePairing::finish(std::vector<ExposureMatch>& matches) {
 void ExposurePairing::restart() {
   images_.clear();
   messages_.clear();
-  heard_ = false;
-  deaf_ = false;
+  any_received_ = false;
+  without_messages_ = false;
   first_image_ns_.reset();
-  least_unmatched_ = 0;
+  min_unmatched_ = 0;
   last_image_ns_.reset();
   ahead_since_ns_.reset();
 }
@@ -134,7 +135,7 @@ void ExposurePairing::dropMessages(std::size_t count) {
   }
 }
 
-/// True when images have been finding an old message all through a timeout. A message waits for an
+/// True when images have found an old message throughout a timeout. A message waits for an
 /// image, and has waited for most of a period, when it belongs to the image before.
 bool ExposurePairing::isOneMessageAhead(std::int64_t now_ns) {
   const bool old = !messages_.empty() && last_image_ns_ &&
@@ -153,19 +154,19 @@ bool ExposurePairing::isOneMessageAhead(std::int64_t now_ns) {
   return true;
 }
 
-/// Keeps least_unmatched_ up after images_ or messages_ changed by one.
-void ExposurePairing::watch(std::int64_t now_ns) {
+/// Keeps min_unmatched_ up after images_ or messages_ changed by one.
+void ExposurePairing::updateUnmatched(std::int64_t now_ns) {
   const std::size_t unmatched = images_.size() + messages_.size();
-  if (unmatched > 0 && least_unmatched_ == 0) {
+  if (unmatched > 0 && min_unmatched_ == 0) {
     unmatched_since_ns_ = now_ns;
-    least_unmatched_ = unmatched;
+    min_unmatched_ = unmatched;
   } else {
-    least_unmatched_ = std::min(least_unmatched_, unmatched);
+    min_unmatched_ = std::min(min_unmatched_, unmatched);
   }
 }
 
-void ExposurePairing::watchAnew(std::int64_t now_ns) {
-  least_unmatched_ = images_.size() + messages_.size();
+void ExposurePairing::restartUnmatched(std::int64_t now_ns) {
+  min_unmatched_ = images_.size() + messages_.size();
   unmatched_since_ns_ = now_ns;
 }
 

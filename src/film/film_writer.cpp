@@ -42,7 +42,7 @@ std::string activePath(const std::string& path) {
   return fs::path(path).replace_extension(".active" + extensionOf(path)).string();
 }
 
-/// Why nothing more can be written to \p path, which OpenCV does not tell; empty if something can.
+/// Why nothing more can be written to \p path, which OpenCV does not say; empty if something can.
 std::string writingFault(const std::string& path) {
   constexpr std::size_t kMoreThanIsLeftOver = 1 << 16;  // the last block of a full disk, say
   errno = 0;
@@ -81,7 +81,7 @@ FilmWriter::FilmWriter(const std::string& path, int rate_hz, bool overwrite)
 FilmWriter::~FilmWriter() {
   writer_.reset();
   if (unfinished_) {
-    std::error_code ignored;  // somebody else's error is on its way already
+    std::error_code ignored;  // another exception is being thrown already
     fs::remove(active_path_, ignored);
   }
 }
@@ -178,7 +178,7 @@ void FilmWriter::close() {
     throw FilmError("cannot write " + path_ + ": there is no image to show");
   }
   writer_->release();
-  // The writer does not tell of a full disk.
+  // The writer does not report a full disk.
   cv::VideoCapture written(active_path_, cv::CAP_FFMPEG);
   const auto images = static_cast<std::uint64_t>(written.get(cv::CAP_PROP_FRAME_COUNT));
   if (!written.isOpened() || images != report_.images) {

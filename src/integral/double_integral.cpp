@@ -53,37 +53,39 @@ void DoubleIntegral::setThresholds(ContrastThresholds thresholds) {
                                  static_cast<double>(kIntervalTick_ns);
   }
   state_->factors.most_ticks = level_.isStaircase() ? std::uint16_t{0} : level_.mostTicks();
-  forget();
+  reset();
 }
 
 std::size_t DoubleIntegral::memoryBytes() const {
   return state_->before.memoryBytes() + state_->after.memoryBytes();
 }
 
-void DoubleIntegral::forget() {
-  state_->before.forget();
-  state_->after.forget();
+void DoubleIntegral::reset() {
+  state_->before.reset();
+  state_->after.reset();
 }
 
-void DoubleIntegral::expect(const ExposureInterval& window, std::int64_t reference_ns) {
-  state_->before.expect({window.start_ns, reference_ns});
-  state_->after.expect({reference_ns, window.end_ns});
+void DoubleIntegral::predictWindow(const ExposureInterval& window, std::int64_t reference_ns) {
+  state_->before.predictInterval({window.start_ns, reference_ns});
+  state_->after.predictInterval({reference_ns, window.end_ns});
 }
 
-void DoubleIntegral::follow(const PixelEventLists& lists) {
-  state_->before.follow(lists, state_->factors, weighting_);
-  state_->after.follow(lists, state_->factors, weighting_);
+void DoubleIntegral::accumulate(const PixelEventLists& lists) {
+  state_->before.accumulate(lists, state_->factors, weighting_);
+  state_->after.accumulate(lists, state_->factors, weighting_);
 }
 
-CloseReport DoubleIntegral::close(const PixelEventLists& lists, const ExposureInterval& window,
-                                  std::int64_t reference_ns, float* gain) {
-  const RunningIntegral::Closed before =
-      state_->before.close(lists, {window.start_ns, reference_ns}, state_->factors, weighting_);
-  const RunningIntegral::Closed after =
-      state_->after.close(lists, {reference_ns, window.end_ns}, state_->factors, weighting_);
+IntegrationReport DoubleIntegral::integrate(const PixelEventLists& lists,
+                                            const ExposureInterval& window,
+                                            std::int64_t reference_ns, float* gain) {
+  const RunningIntegral::Result before =
+      state_->before.integrate(lists, {window.start_ns, reference_ns}, state_->factors, weighting_);
+  const RunningIntegral::Result after =
+      state_->after.integrate(lists, {reference_ns, window.end_ns}, state_->factors, weighting_);
 
-  CloseReport report;
-  report.kind = before.followed && after.followed ? CloseKind::kFollowed : CloseKind::kSurprise;
+  IntegrationReport report;
+  report.kind = before.predicted && after.predicted ? IntegrationKind::kPredicted
+                                                    : IntegrationKind::kNotPredicted;
   report.events = lists.lowerBound(window.end_ns) - lists.lowerBound(window.start_ns);
   report.walked = before.walked + after.walked;
   if (before.clock.length() + after.clock.length() > 0.0) {
@@ -95,8 +97,8 @@ CloseReport DoubleIntegral::close(const PixelEventLists& lists, const ExposureIn
   } else {  // counter weighting, no event
     std::fill(gain, gain + size_.pixelCount(), 1.0F);
   }
-  state_->before.tookSums();
-  state_->after.tookSums();
+  state_->before.markSumsTaken();
+  state_->after.markSumsTaken();
   return report;
 }
 

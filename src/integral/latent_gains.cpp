@@ -10,7 +10,7 @@
 namespace fast_edi {
 namespace {
 
-/// Within what DoubleIntegral::close() gives.
+/// Within what DoubleIntegral::integrate() gives.
 float limited(double gain) {
   return static_cast<float>(std::min(std::max(gain, kMinGain), kMaxGain));
 }

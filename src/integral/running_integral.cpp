@@ -5,13 +5,13 @@
 namespace fast_edi {
 namespace {
 
-/// Base instants are multiples of this. Larger: fewer expectations fail at a multiple; smaller:
-/// fewer events to prepend when an interval is closed. About half a millisecond.
+/// Base instants are multiples of this. Larger: fewer predictions fail at a multiple; smaller:
+/// fewer events to prepend when an interval is completed. About half a millisecond.
 constexpr std::int64_t kBaseQuantum_ns = 1 << 19;
 
-/// Running sums stay this far from the ends of the expected interval: what the expectation may be
-/// off without the events having to be walked again.
-constexpr std::int64_t kExpectationMargin_ns = 50 * kNanosecondsPerMicrosecond;
+/// Running sums stay this far from the ends of the predicted interval: the prediction may be wrong
+/// by that much without events having to be folded again.
+constexpr std::int64_t kPredictionMargin_ns = 50 * kNanosecondsPerMicrosecond;
 
 /// Floor to a multiple of a positive divisor.
 std::int64_t floorMultiple(std::int64_t value, std::int64_t divisor) {
@@ -20,7 +20,7 @@ std::int64_t floorMultiple(std::int64_t value, std::int64_t divisor) {
 }
 
 std::int64_t baseInstant(const ExposureInterval& interval) {
-  const std::int64_t earliest_ns = interval.start_ns + kExpectationMargin_ns;
+  const std::int64_t earliest_ns = interval.start_ns + kPredictionMargin_ns;
   const std::int64_t multiple_ns =
       floorMultiple(earliest_ns - 1, kBaseQuantum_ns) + kBaseQuantum_ns;
   return std::min(multiple_ns, interval.end_ns);
@@ -36,23 +36,23 @@ void RunningIntegral::clear() {
   started_ = false;
 }
 
-void RunningIntegral::forget() {
+void RunningIntegral::reset() {
   clear();
-  expecting_ = false;
+  has_prediction_ = false;
 }
 
-void RunningIntegral::expect(const ExposureInterval& interval) {
+void RunningIntegral::predictInterval(const ExposureInterval& interval) {
   clear();
-  expecting_ = interval.length() > 0;
-  expected_ = interval;
+  has_prediction_ = interval.length() > 0;
+  predicted_ = interval;
 }
 
-void RunningIntegral::tookSums() {
+void RunningIntegral::markSumsTaken() {
   clean_ = true;
   started_ = false;
 }
 
-void RunningIntegral::startAt(const PixelEventLists& lists, std::int64_t base_ns) {
+void RunningIntegral::restartAt(const PixelEventLists& lists, std::int64_t base_ns) {
   clear();
   started_ = true;
   base_ns_ = base_ns;
@@ -60,51 +60,52 @@ void RunningIntegral::startAt(const PixelEventLists& lists, std::int64_t base_ns
   cursor_ = base_sequence_;
 }
 
-void RunningIntegral::follow(const PixelEventLists& lists, const EventFactors& factors,
-                             Weighting weighting) {
-  if (!expecting_ || !lists.hasNewest()) {
+void RunningIntegral::accumulate(const PixelEventLists& lists, const EventFactors& factors,
+                                 Weighting weighting) {
+  if (!has_prediction_ || !lists.hasNewest()) {
     return;
   }
   if (!started_) {
-    const std::int64_t base_ns = baseInstant(expected_);
+    const std::int64_t base_ns = baseInstant(predicted_);
     if (lists.newest() < base_ns) {
       return;
     }
-    startAt(lists, base_ns);
+    restartAt(lists, base_ns);
   }
   if (cursor_ < lists.beginSequence()) {
-    forget();  // overflow took events that were not folded in yet
+    reset();  // overflow took events that were not folded in yet
     return;
   }
-  fold(lists, lists.lowerBound(expected_.end_ns - kExpectationMargin_ns), factors, weighting);
+  fold(lists, lists.lowerBound(predicted_.end_ns - kPredictionMargin_ns), factors, weighting);
 }
 
-RunningIntegral::Closed RunningIntegral::close(const PixelEventLists& lists,
-                                               const ExposureInterval& interval,
-                                               const EventFactors& factors, Weighting weighting) {
+RunningIntegral::Result RunningIntegral::integrate(const PixelEventLists& lists,
+                                                   const ExposureInterval& interval,
+                                                   const EventFactors& factors,
+                                                   Weighting weighting) {
   const std::int64_t base_ns = baseInstant(interval);
   const std::uint64_t begin = lists.lowerBound(interval.start_ns);
   const std::uint64_t base = lists.lowerBound(base_ns);
   const std::uint64_t end = lists.lowerBound(interval.end_ns);
 
-  Closed closed;
+  Result result;
   const bool sums_serve = started_ && base_ns_ == base_ns && base_sequence_ == base &&
                           base >= lists.beginSequence() && cursor_ <= end;
   if (!sums_serve) {
-    startAt(lists, base_ns);
+    restartAt(lists, base_ns);
   }
-  closed.followed = sums_serve || interval.length() == 0;
-  closed.walked = (base - begin) + (end - cursor_);
+  result.predicted = sums_serve || interval.length() == 0;
+  result.walked = (base - begin) + (end - cursor_);
   fold(lists, end, factors, weighting);
   prepend(lists, begin, factors, weighting);
   if (weighting == Weighting::kTime) {
-    closed.clock = {static_cast<double>(interval.start_ns - base_ns),
+    result.clock = {static_cast<double>(interval.start_ns - base_ns),
                     static_cast<double>(interval.end_ns - base_ns)};
   } else {
-    closed.clock = {-static_cast<double>(base - begin), static_cast<double>(end - base)};
+    result.clock = {-static_cast<double>(base - begin), static_cast<double>(end - base)};
   }
-  expecting_ = false;
-  return closed;
+  has_prediction_ = false;
+  return result;
 }
 
 /// Appends the events [cursor_, end) to the sums.

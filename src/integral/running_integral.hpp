@@ -17,9 +17,9 @@
 ///
 ///     sum <- m sum + (1 - m) u + (K - 1) r,   v_n <- m v_n.
 ///
-/// So an expected interval that was off by microseconds leads to the same operations in the same
+/// So a predicted interval that was off by microseconds leads to the same operations in the same
 /// order as none at all, unless a multiple of the quantum lies between the two starts; then the
-/// sums start anew.
+/// sums restart.
 #pragma once
 
 #include <cstdint>
@@ -36,39 +36,39 @@ class RunningIntegral {
  public:
   explicit RunningIntegral(std::size_t pixels) : sums_(pixels, PixelSums{0.0, 1.0}) {}
 
-  /// Names the interval that close() will probably ask for; forgets sums of any other.
-  void expect(const ExposureInterval& interval);
-  /// Forgets sums and expectation.
-  void forget();
-  /// Folds in what the lists hold of the expected interval, short of its ends.
-  void follow(const PixelEventLists& lists, const EventFactors& factors, Weighting weighting);
+  /// Predicts the interval of the next integrate(); sums of any other are discarded.
+  void predictInterval(const ExposureInterval& interval);
+  /// Discards sums and prediction.
+  void reset();
+  /// Folds in what the lists hold of the predicted interval, short of its ends.
+  void accumulate(const PixelEventLists& lists, const EventFactors& factors, Weighting weighting);
 
-  struct Closed {
+  struct Result {
     IntervalClock clock;       ///< for sums()
-    bool followed = false;     ///< the running sums were of use
+    bool predicted = false;    ///< the running sums were of use
     std::uint64_t walked = 0;  ///< events handled by this call
   };
 
   /// Completes the sums of an interval: integral = sum + value * clock.end - clock.start. After
-  /// that they must be taken (see takeGains(), which resets them) and tookSums() be called.
-  Closed close(const PixelEventLists& lists, const ExposureInterval& interval,
-               const EventFactors& factors, Weighting weighting);
+  /// that they must be taken (see takeGains(), which resets them) and markSumsTaken() be called.
+  Result integrate(const PixelEventLists& lists, const ExposureInterval& interval,
+                   const EventFactors& factors, Weighting weighting);
   PixelSums* sums() { return sums_.data(); }
-  void tookSums();
+  void markSumsTaken();
 
   std::size_t memoryBytes() const { return sums_.capacity() * sizeof(PixelSums); }
 
  private:
   void clear();
-  void startAt(const PixelEventLists& lists, std::int64_t base_ns);
+  void restartAt(const PixelEventLists& lists, std::int64_t base_ns);
   void fold(const PixelEventLists& lists, std::uint64_t end, const EventFactors& factors,
             Weighting weighting);
   void prepend(const PixelEventLists& lists, std::uint64_t begin, const EventFactors& factors,
                Weighting weighting);
 
   std::vector<PixelSums> sums_;
-  bool expecting_ = false;
-  ExposureInterval expected_;
+  bool has_prediction_ = false;
+  ExposureInterval predicted_;
   bool clean_ = true;                ///< all sums are those of no event
   bool started_ = false;             ///< the members below are in force
   std::int64_t base_ns_ = 0;         ///< forward sums start here

@@ -21,7 +21,6 @@ constexpr std::size_t kTableSize = 256;
 constexpr std::size_t kMaxFileBytes = std::size_t{1} << 20;
 constexpr double kMaxDn8 = 255.0;
 constexpr double kMaxDn16 = 65535.0;
-/// 16-bit DN for one 8-bit DN: 65535 / 255.
 
 /// Truncation rounds to nearest after this is added to a number that is not negative.
 constexpr float kHalf = 0.5F;

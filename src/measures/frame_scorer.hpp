@@ -63,7 +63,7 @@ const MeasureInfo& describe(Measure measure);
 constexpr double kCloseTracksPx = 10.0;
 constexpr double kWideTracksPx = 20.0;
 
-/// No value: no truth, no frame before, or not to be had on this machine.
+/// No value: no truth, no previous frame, or not available on this machine.
 using Scores = std::array<std::optional<double>, kMeasureCount>;
 
 /// How much is measured; each includes those before it.
@@ -114,7 +114,7 @@ class FrameScorer {
   /// \throws std::runtime_error when a given SSEQ model cannot be read
   explicit FrameScorer(const ScorerOptions& options);
 
-  /// Measures that are not to be had, each with its reason: "SSEQ: no model folder was given".
+  /// Measures that are not available, each with its reason: "SSEQ: no model folder was given".
   const std::vector<std::string>& missing() const { return missing_; }
 
   const ScorerOptions& options() const { return options_; }

@@ -18,7 +18,7 @@ bool equalIgnoringCase(const std::string& a, const std::string& b) {
          });
 }
 
-/// Collects biases from an update and remembers what it looked for in vain.
+/// Collects biases from an update and notes which are missing.
 class BiasFinder {
  public:
   explicit BiasFinder(const dynamic_reconfigure::Config& update) : update_(update) {}

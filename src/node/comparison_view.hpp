@@ -15,16 +15,16 @@
 
 namespace fast_edi {
 
-/// Keeps recent events of its own, since those of the pipeline may be gone once a frame is closed;
-/// so it costs something only while somebody looks.
+/// Stores recent events itself, since those of the pipeline may be discarded once a frame is
+/// closed. Used only while the topic has a subscriber.
 class ComparisonView {
  public:
-  /// Older events are forgotten: a picture of a longer exposure shows its last ones.
+  /// Older events are discarded: a picture of a longer exposure shows its last ones.
   static constexpr std::size_t kMaxEvents = 1'000'000;
 
   /// \param size as the event array states it
   void addEvents(const WireEvents& events, SensorSize size, const EventMapping& mapping);
-  /// Forgets all events.
+  /// Discards all events.
   void clear();
 
   /// A bgr8 image of three times the input's width. ON events are red, OFF events blue, stronger

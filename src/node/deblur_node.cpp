@@ -16,8 +16,8 @@ namespace {
 const ros::WallDuration kReportPeriod(1.0);
 /// Of what has to wait for the ROS master.
 const ros::WallDuration kRetryPeriod(0.5);
-/// One part in so many of `max_buffered_events` is for nothing but arrays that wait for their
-/// callback; more of it while the pipeline leaves more.
+/// 1 / kWaitingShare of `max_buffered_events` is reserved for arrays that wait for their callback;
+/// they may also use what the pipeline leaves.
 constexpr std::size_t kWaitingShare = 4;
 
 /// What the pipeline may take of `max_buffered_events`.
@@ -47,18 +47,18 @@ void DeblurNode::start() {
   report_.advertise(nh_, private_nh_, name_);
   configure();
   if (deblurrer_) {
-    outputs_.advertise(side_thread_.handle(nh_), parameters_->get().deblur.latent,
+    outputs_.advertise(callback_thread_.handle(nh_), parameters_->get().deblur.latent,
                        [this] { subscribersChanged(); });
     reconfigure_server_ = std::make_unique<ReconfigureServer>(
-        side_thread_.handle(private_nh_), parameters_->values(),
+        callback_thread_.handle(private_nh_), parameters_->values(),
         [this](const LiveParameters::Values& wanted) { return reconfigure(wanted); });
     if (!parameters_->get().ros.lazy) {
       inputs_ = makeInputs();
     }
-    retry_timer_ = side_thread_.handle(nh_).createSteadyTimer(
+    retry_timer_ = callback_thread_.handle(nh_).createSteadyTimer(
         kRetryPeriod, [this](const ros::SteadyTimerEvent&) { updateInputs(); });
-    side_thread_.post([this] { updateInputs(); });
-    side_thread_.start();
+    callback_thread_.post([this] { updateInputs(); });
+    callback_thread_.start();
   }
   report_timer_ =
       nh_.createSteadyTimer(kReportPeriod, [this](const ros::SteadyTimerEvent&) { report(); });
@@ -66,7 +66,7 @@ void DeblurNode::start() {
 
 DeblurNode::~DeblurNode() {
   // Each of these waits for callbacks at work, which may wait for the mutex.
-  side_thread_.stop();
+  callback_thread_.stop();
   reconfigure_server_.reset();
   std::unique_ptr<NodeInputs> ended;
   {
@@ -123,7 +123,7 @@ std::unique_ptr<NodeInputs> DeblurNode::makeInputs() {
     withInputs([&] { report_.addRefusedBiases(parameters_->followBiases(message)); });
   };
   handlers.tick = [this] { advanceClock(); };
-  handlers.on_change = [this] { side_thread_.post([this] { updateInputs(); }); };
+  handlers.on_change = [this] { callback_thread_.post([this] { updateInputs(); }); };
   report_.startListening(steadyNow());
   return std::make_unique<NodeInputs>(nh_, private_nh_, maxWaitingEvents(), std::move(handlers));
 }

@@ -17,12 +17,12 @@
 
 #include "fast_edi/messages/message_frame_sink.hpp"
 #include "fast_edi/pipeline/deblurrer.hpp"
+#include "node/callback_thread.hpp"
 #include "node/node_inputs.hpp"
 #include "node/node_outputs.hpp"
 #include "node/node_report.hpp"
 #include "node/parameters_in_force.hpp"
 #include "node/reconfigure_server.hpp"
-#include "node/side_thread.hpp"
 
 namespace fast_edi {
 
@@ -30,33 +30,31 @@ namespace fast_edi {
 /// to be handled in the order of their arrival, so that queue must call one callback at a time: a
 /// nodelet's getNodeHandle() whatever the number of the manager's worker threads, or ros::spin(). A
 /// queue that calls several at once does no harm beyond that order. Changes of parameters,
-/// subscribers that come and go, and subscribing to the inputs are handled by a SideThread.
+/// subscribers that come and go, and subscribing to the inputs are handled by a CallbackThread.
 ///
 /// mutex_ guards all members that callbacks use: everything after it. Each callback holds it from
 /// beginning to end. It is needed even with a queue as above, which is still running while the
 /// destructor is at work.
 ///
 /// Nobody calls the ROS master with mutex_ held, nor in the thread of the inputs: that takes time
-/// and, while there is no master, may not end. Inputs are subscribed to by the SideThread, once the
-/// master can be reached; until then the node works on with what it has.
+/// and, while there is no master, may not end. The CallbackThread subscribes to the inputs, once
+/// the master can be reached; until then the node continues with the subscriptions that it has.
 ///
-/// Event arrays alone are taken in by roscpp's thread, which never waits for mutex_: see
+/// Event arrays alone are received in roscpp's thread, which never waits for mutex_: see
 /// waiting_arrays.hpp.
 ///
 /// Order of locks: that of ReconfigureServer, mutex_, then any lock inside ROS (publishing,
-/// diagnostics) or of EventSubscription, WaitingArrays and SideThread. The SideThread is stopped
-/// without mutex_. The other way round would be to hold mutex_ while waiting for a callback to end,
-/// which may be waiting for mutex_. So what waits for callbacks (ending subscriptions, timers and
-/// publishers) is done without holding it.
+/// diagnostics) or of EventSubscription, WaitingArrays and CallbackThread. The CallbackThread is
+/// stopped without mutex_. What waits for callbacks to end (ending subscriptions, timers and
+/// publishers) is done without mutex_, since such a callback may be waiting for it.
 ///
 /// Starting. What can fail comes before what calls back; when it fails, the destructor runs.
 ///
-/// Closing. First the SideThread ends, then the inputs and the clock, then the report, then the
-/// publishers, which are never replaced before: at no time can a callback meet a publisher that is
-/// gone.
+/// Closing. First the CallbackThread ends, then the inputs and the clock, then the report, then the
+/// publishers, which are never replaced before: no callback can meet a publisher that is gone.
 ///
-/// No exception leaves a callback: one that gets here is logged, reported and the pipeline starts
-/// anew.
+/// No exception leaves a callback: one that gets here is logged and reported, and the pipeline
+/// restarts.
 class DeblurNode {
  public:
   /// A configuration that cannot be used is logged and reported on /diagnostics; the object then
@@ -111,7 +109,7 @@ class DeblurNode {
   ros::NodeHandle private_nh_;
   std::string name_;
 
-  SideThread side_thread_;  ///< outlives the publishers and the server that use its queue
+  CallbackThread callback_thread_;  ///< outlives the publishers and the server that use its queue
 
   std::mutex mutex_;
   NodeReport report_;
@@ -122,7 +120,7 @@ class DeblurNode {
   Callback callback_;
   ros::SteadyTimer report_timer_;
   ros::SteadyTimer retry_timer_;
-  /// Null while nobody listens; exchanged by the SideThread alone.
+  /// Null while nobody listens; exchanged by the CallbackThread alone.
   std::unique_ptr<NodeInputs> inputs_;
   std::unique_ptr<ReconfigureServer> reconfigure_server_;  ///< none when idle for good
 };

@@ -1,5 +1,5 @@
 /// \file
-/// Subscription to event arrays from whoever publishes them.
+/// Subscription to event arrays, from this process or another one.
 ///
 /// From another process an array comes as bytes, which EventArray keeps as they are. From a
 /// publisher in the same process (the driver in the same nodelet manager) it comes as a pointer,

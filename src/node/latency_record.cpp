@@ -14,11 +14,6 @@ void LatencyRecord::add(std::int64_t duration_ns) {
   next_ = (next_ + 1) % kCapacity;
 }
 
-void LatencyRecord::clear() {
-  durations_ns_.clear();
-  next_ = 0;
-}
-
 std::int64_t LatencyRecord::percentile(double fraction) const {
   if (durations_ns_.empty()) {
     return 0;

@@ -8,14 +8,12 @@
 
 namespace fast_edi {
 
-/// Keeps the last kCapacity durations; older ones are forgotten.
+/// Keeps the last kCapacity durations; older ones are discarded.
 class LatencyRecord {
  public:
   static constexpr std::size_t kCapacity = 1000;
 
   void add(std::int64_t duration_ns);
-  void clear();
-  bool empty() const { return durations_ns_.empty(); }
 
   /// The smallest kept duration that at least \p fraction of the kept ones do not exceed (nearest
   /// rank) [ns]; 0 when empty. \pre 0 < fraction <= 1

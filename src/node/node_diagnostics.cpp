@@ -106,7 +106,7 @@ void NodeDiagnostics::collectComplaints(const NodeSnapshot& now) {
   complain("suspended", now.event_suspensions, before_.event_suspensions,
            "time(s) that no events" + on_events + " were received for " +
                secondsText(OverloadGuard::kPause_ns) +
-               ": more come than can be taken in, frames are passed through meanwhile");
+               ", suspended by overload: frames are passed through meanwhile");
   complain("late", c.events_late, b.events_late,
            "event(s)" + on_events + " dropped: older than the newest, expected increasing times");
   complain("outside", c.events_outside, b.events_outside,
@@ -123,9 +123,9 @@ void NodeDiagnostics::collectComplaints(const NodeSnapshot& now) {
   complain("event restart", c.event_restarts, b.event_restarts,
            "restart(s) of the publisher" + on_events + ": no events in between");
   complain("event jump", c.event_time_jumps, b.event_time_jumps,
-           "time jump(s) of the events" + on_events + ": started anew");
+           "time jump(s) of the events" + on_events + ": restarted");
   complain("frame jump", c.frame_time_jumps, b.frame_time_jumps,
-           "time jump(s) of the frames" + on_image + ": started anew");
+           "time jump(s) of the frames" + on_image + ": restarted");
   complain(
       "size change", c.size_changes, b.size_changes,
       "change(s) of the sensor's size" + on_events + ", now " + sizeText(now.status.sensor_size));
@@ -250,8 +250,8 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
   status.add("Exposures refused", c.exposures_refused);
   status.add("Exposures without a frame", c.exposures_surplus);
   status.add("Frames without their exposure", c.exposures_missing);
-  status.add("Windows predicted", c.closes_followed);
-  status.add("Windows not predicted", c.closes_surprise);
+  status.add("Windows predicted", c.windows_predicted);
+  status.add("Windows not predicted", c.windows_not_predicted);
   status.add("Pixels out of range", c.pixels_out_of_range);
   status.add("Parameter changes", now_.reconfigurations);
   status.add("Parameter values refused", now_.values_refused);

@@ -1,5 +1,5 @@
 /// \file
-/// What a deblurring node tells about itself: totals, latencies, warnings, `/diagnostics`.
+/// What a deblurring node reports about itself: totals, latencies, warnings, `/diagnostics`.
 #pragma once
 
 #include <cstdint>

@@ -79,7 +79,7 @@ class ReconfigureServer::Impl {
       : nh_(private_nh), handler_(std::move(handler)), server_(mutex_, private_nh) {
     server_.setCallback([this, in_force](ServedConfig& config, std::uint32_t /*level*/) {
       if (last_.empty()) {
-        takeOver(in_force, config);
+        store(in_force, config);
       } else {
         change(config);
       }
@@ -95,12 +95,12 @@ class ReconfigureServer::Impl {
       }
     }
     if (!wanted.empty()) {
-      takeOver(handler_(wanted), config);
+      store(handler_(wanted), config);
     }
   }
 
   /// Makes \p config what is in force, and the parameter server's values too.
-  void takeOver(const Values& in_force, DeblurConfig& config) {
+  void store(const Values& in_force, DeblurConfig& config) {
     assign(in_force, config);
     const Values before = std::exchange(last_, valuesOf(config));
     if (!ros::master::check()) {

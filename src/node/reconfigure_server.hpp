@@ -18,8 +18,8 @@ namespace fast_edi {
 /// threshold while it comes from biases: a later start with 0 would be refused.
 ///
 /// Threads. Requests are answered in the thread of the node handle's queue: let that be a
-/// SideThread, so that events need not wait for the parameter server, and stop it before destroying
-/// this object, which the library's server does not survive while it answers a request.
+/// CallbackThread, so that events need not wait for the parameter server, and stop it before
+/// destroying this object, which the library's server does not survive while it answers a request.
 class ReconfigureServer {
  public:
   /// \param wanted values that differ from those in force

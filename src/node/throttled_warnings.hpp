@@ -22,7 +22,7 @@ class ThrottledWarnings {
   /// \param name of the node, which begins each line
   explicit ThrottledWarnings(std::string name) : name_(std::move(name)) {}
 
-  /// Takes one of this kind for written, by somebody else.
+  /// A line of this kind was written elsewhere.
   void note(const std::string& kind, std::int64_t now_ns) { last_ns_[kind] = now_ns; }
 
   /// Writes \p text unless one of its kind was written within the interval.

@@ -9,16 +9,16 @@
 namespace fast_edi {
 
 /// One delivery in the callback queue.
-class WaitingArrays::Turn : public ros::CallbackInterface {
+class WaitingArrays::DeliveryCallback : public ros::CallbackInterface {
  public:
-  explicit Turn(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  explicit DeliveryCallback(std::shared_ptr<State> state) : state_(std::move(state)) {}
   CallResult call() override {
     const std::shared_lock<std::shared_mutex> at_work(state_->at_work);
     Waiting next;
     std::size_t lost_events = 0;
     {
       const std::lock_guard<std::mutex> lock(state_->mutex);
-      --state_->turns;
+      --state_->callbacks;
       if (state_->ended || state_->waiting.empty()) {
         return Success;
       }
@@ -63,7 +63,7 @@ void WaitingArrays::end() {
 
 void WaitingArrays::add(std::size_t events, Delivery deliver) {
   std::deque<Waiting> dropped;  // freed without the mutex
-  bool needs_turn = false;
+  bool needs_callback = false;
   {
     State& state = *state_;
     const std::lock_guard<std::mutex> lock(state.mutex);
@@ -79,11 +79,11 @@ void WaitingArrays::add(std::size_t events, Delivery deliver) {
       dropped.push_back(std::move(state.waiting.front()));
       state.waiting.pop_front();
     }
-    needs_turn = state.turns < state.waiting.size();
-    state.turns += needs_turn ? 1 : 0;
+    needs_callback = state.callbacks < state.waiting.size();
+    state.callbacks += needs_callback ? 1 : 0;
   }
-  if (needs_turn) {
-    queue_.addCallback(boost::make_shared<Turn>(state_), id());
+  if (needs_callback) {
+    queue_.addCallback(boost::make_shared<DeliveryCallback>(state_), id());
   }
 }
 

@@ -50,7 +50,7 @@ class WaitingArrays {
     std::size_t events = 0;
     Delivery deliver;
   };
-  /// Shared with the turns in the callback queue: roscpp may call one that it had already taken out
+  /// Shared with the callbacks in the queue: roscpp may call one that it had already taken out
   /// when the others were removed.
   struct State {
     LossHandler on_loss;
@@ -61,9 +61,9 @@ class WaitingArrays {
     std::deque<Waiting> waiting;
     std::size_t waiting_events = 0;
     std::size_t lost_events = 0;  ///< in front of waiting
-    std::size_t turns = 0;        ///< in the callback queue; never fewer than waiting
+    std::size_t callbacks = 0;    ///< in the callback queue; never fewer than waiting
   };
-  class Turn;
+  class DeliveryCallback;
 
   std::uint64_t id() const { return reinterpret_cast<std::uintptr_t>(this); }
 

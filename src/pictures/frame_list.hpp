@@ -33,7 +33,7 @@ bool hasFrameList(const std::string& folder);
 /// - Exposure_start.txt and Exposure_end.txt, a time in each line, of the pictures in Blur/ in the
 ///   order of their names (EVDI).
 ///
-/// The unit of time is that which the name of the column tells ("stamp_ns"), else that in which
+/// The unit of time is the one in the name of the column ("stamp_ns"), else that in which
 /// frames come 2 ms to 2 s apart.
 /// \throws RecordingError when there is no list, no frame in it, or no unit of time
 FrameList readFrameList(const std::string& folder);

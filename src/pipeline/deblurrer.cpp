@@ -29,7 +29,7 @@ class Deblurrer::Impl {
       : sink_(sink),
         refinement_(parameters),
         events_(limitsOf(parameters), counters_,
-                [this](StreamBreak kind, std::int64_t next_ns) { beforeBreak(kind, next_ns); }),
+                [this](StreamReset kind, std::int64_t next_ns) { beforeReset(kind, next_ns); }),
         queue_(parameters_, events_, counters_),
         reconstruction_(sink, parameters.filter) {}
 
@@ -55,12 +55,12 @@ class Deblurrer::Impl {
   void afterEvents();
   void takeEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence);
   void takeEvents(const Event* events, std::size_t count, SensorSize size);
-  void beforeBreak(StreamBreak kind, std::int64_t next_event_ns);
+  void beforeReset(StreamReset kind, std::int64_t next_event_ns);
   void closeReady();
   void process(ClosedFrame& frame);
   void deblur(ClosedFrame& frame);
   void passThrough(ClosedFrame& frame);
-  void count(const CloseReport& report);
+  void count(const IntegrationReport& report);
   void discardOldEvents(const ClosedFrame& frame);
   bool prepareIntegral(bool may_allocate);
   void predictWindow();
@@ -171,7 +171,7 @@ void Deblurrer::Impl::finish() {
 void Deblurrer::Impl::pause() {
   queue_.restart();
   events_.restart();
-  integral_.forgetPrediction();
+  integral_.resetPrediction();
   reconstruction_.interrupt();
 }
 
@@ -192,9 +192,9 @@ void Deblurrer::Impl::setParameters(const DeblurParameters& parameters) {
 
 /// The event clock jumps: frames of the old epoch get nothing more. The sensor's size changes:
 /// frames up to there have all they need, which the stream itself knows.
-void Deblurrer::Impl::beforeBreak(StreamBreak kind, std::int64_t next_event_ns) {
+void Deblurrer::Impl::beforeReset(StreamReset kind, std::int64_t next_event_ns) {
   closeReady();
-  if (kind != StreamBreak::kTimeJump) {
+  if (kind != StreamReset::kTimeJump) {
     return;
   }
   const std::int64_t newest_ns = events_.lists()->newest();
@@ -211,7 +211,7 @@ void Deblurrer::Impl::closeReady() {
     events_generation_ = events_.generation();
     refinement_.reset();
     integral_.adopt(parameters_);
-    queue_.forgetClocks();
+    queue_.resetClocks();
   }
   while (std::optional<ClosedFrame> frame = queue_.takeReady()) {
     process(*frame);
@@ -235,7 +235,7 @@ void Deblurrer::Impl::deblur(ClosedFrame& frame) {
       window.start_ns + (output.exposure.at(parameters_.reference) - output.exposure.start_ns);
 
   prepareIntegral(true);
-  const CloseReport report =
+  const IntegrationReport report =
       integral_.integrate(*events_.lists(), window, reference_ns, parameters_.filter.enabled);
   const bool learns = refinement_.wantsFrame();
   if (learns) {
@@ -247,7 +247,7 @@ void Deblurrer::Impl::deblur(ClosedFrame& frame) {
   output.deblurred = true;
   output.events = report.events;
   sink_.finish(output);
-  // What follows comes behind the frame itself, which somebody waits for.
+  // After the frame itself, which should be published first.
   counters_.latent_images += reconstruction_.writeVideo(events_, parameters_);
   if (learns) {
     refinement_.learn(output.input.image, window, reference_ns, events_, counters_);
@@ -266,11 +266,11 @@ void Deblurrer::Impl::passThrough(ClosedFrame& frame) {
   sink_.finish(frame.output);
 }
 
-void Deblurrer::Impl::count(const CloseReport& report) {
+void Deblurrer::Impl::count(const IntegrationReport& report) {
   ++counters_.frames_deblurred;
   counters_.frames_still += report.events == 0 ? 1 : 0;
-  counters_.closes_followed += report.kind == CloseKind::kFollowed ? 1 : 0;
-  counters_.closes_surprise += report.kind == CloseKind::kSurprise ? 1 : 0;
+  counters_.windows_predicted += report.kind == IntegrationKind::kPredicted ? 1 : 0;
+  counters_.windows_not_predicted += report.kind == IntegrationKind::kNotPredicted ? 1 : 0;
   counters_.pixels_out_of_range += report.out_of_range;
 }
 

@@ -90,8 +90,8 @@ void FrameQueue::assignExposures() {
       continue;
     }
     WaitingFrame& frame = waiting_[static_cast<std::size_t>(match.image - waiting_.front().number)];
-    if (match.own_ns) {
-      frame.window.settle(match.own_ns);
+    if (match.length_ns) {
+      frame.window.settle(match.length_ns);
     } else {
       settle(frame);
     }

@@ -1,6 +1,7 @@
 /// \file
 /// The frames that wait for their exposure message and their events. They leave in the order of
-/// their arrival: as soon as a verdict is final, or after the close timeout with what has come.
+/// their arrival: as soon as a verdict is final, or after the close timeout with the events
+/// received so far.
 ///
 /// Frames whose output stamp would not be later than the last one of their epoch are counted
 /// (frames_suppressed) and left out.
@@ -51,20 +52,21 @@ class FrameQueue {
 
   // Each returns nothing when no such frame is left; call it until then.
 
-  /// The next frame that needs not wait any longer.
+  /// The next frame that need not wait any longer.
   std::optional<ClosedFrame> takeReady();
   /// The next frame of more than kMaxFrames.
   std::optional<ClosedFrame> takeSurplus();
-  /// The next frame, with what has come.
+  /// The next frame, with the events received so far.
   std::optional<ClosedFrame> takeNext();
-  /// The next frame, with what has come, if its exposure ends nearer to \p newest_event_ns, the
-  /// last of an epoch of events, than to \p next_event_ns, the first of the next epoch.
+  /// The next frame, with the events received so far, if its exposure ends nearer to \p
+  /// newest_event_ns, the last of an epoch of events, than to \p next_event_ns, the first of the
+  /// next epoch.
   std::optional<ClosedFrame> takeBefore(std::int64_t newest_event_ns, std::int64_t next_event_ns);
 
   /// No exposure message will come any more.
   void endExposures();
-  /// The event clock jumped: how it stands to that of the frames is open again.
-  void forgetClocks() { clocks_differ_ = false; }
+  /// The event clock jumped: whether it differs from that of the frames is not known any more.
+  void resetClocks() { clocks_differ_ = false; }
   /// Drops all frames (frames_abandoned) and begins a new epoch.
   void restart();
   /// To be called when the parameters in force were changed by the user.

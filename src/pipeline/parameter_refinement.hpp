@@ -29,7 +29,7 @@ class ParameterRefinement {
 
   /// Keeps what was learned unless it would be learned differently now.
   void setParameters(const DeblurParameters& parameters);
-  /// Events were lost: forgets what was learned, so that what follows is that of a fresh start.
+  /// Events were lost: discards what was learned and restarts from the given values.
   void reset();
 
   /// True when the frame that is about to be deblurred is needed.

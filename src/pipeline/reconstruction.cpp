@@ -11,8 +11,8 @@ void Reconstruction::setFilter(const FilterParameters& filter) {
 }
 
 void Reconstruction::interrupt() {
-  video_.breakOff();
-  fusion_.forget();
+  video_.interrupt();
+  fusion_.reset();
 }
 
 void Reconstruction::render(const Frame& frame, WindowIntegral& integral, const EventStream& events,
@@ -29,7 +29,7 @@ void Reconstruction::render(const Frame& frame, WindowIntegral& integral, const 
     video_.take(frame.output, frame.epoch, integral.gains(), integral.counts(), lists,
                 frame.reference(), parameters);
   } else {
-    video_.breakOff();
+    video_.interrupt();
   }
   if (stabilises && parameters.reference != ExposureInstant::kMid) {
     middle_.take(integral.gains(), lists, frame.reference(), model);

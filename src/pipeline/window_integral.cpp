@@ -35,8 +35,8 @@ bool WindowIntegral::prepare(EventStream& events, const DeblurParameters& parame
   }
   events.keepIntervals(!integral_->level().isStaircase());
   if (generation_ != events.generation()) {
-    integral_->forget();
-    counts_->forget();
+    integral_->reset();
+    counts_->reset();
     generation_ = events.generation();
     predicted_.reset();
   }
@@ -58,24 +58,25 @@ void WindowIntegral::adopt(const DeblurParameters& parameters) {
 void WindowIntegral::predictWindow(const ExposureInterval& window, std::int64_t reference_ns) {
   const Prediction prediction{window, reference_ns};
   if (!predicted_ || !areNear(*predicted_, prediction)) {
-    integral_->expect(window, reference_ns);
+    integral_->predictWindow(window, reference_ns);
     predicted_ = prediction;
   }
 }
 
 void WindowIntegral::accumulate(const PixelEventLists& lists, bool counts) {
-  integral_->follow(lists);
+  integral_->accumulate(lists);
   if (counts && predicted_) {
-    counts_->follow(lists, predicted_->window);
+    counts_->accumulate(lists, predicted_->window);
   }
 }
 
-CloseReport WindowIntegral::integrate(const PixelEventLists& lists, const ExposureInterval& window,
-                                      std::int64_t reference_ns, bool counts) {
-  const CloseReport report = integral_->close(lists, window, reference_ns, gains_.data());
+IntegrationReport WindowIntegral::integrate(const PixelEventLists& lists,
+                                            const ExposureInterval& window,
+                                            std::int64_t reference_ns, bool counts) {
+  const IntegrationReport report = integral_->integrate(lists, window, reference_ns, gains_.data());
   predicted_.reset();
   if (counts) {
-    counts_->close(lists, window);
+    counts_->count(lists, window);
   }
   return report;
 }

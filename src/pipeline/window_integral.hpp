@@ -1,7 +1,6 @@
 /// \file
-/// The double integral of each frame and what is kept for it while events come: the predicted
-/// window, gains and event counts of all pixels. Follows the event lists through changes of size
-/// and flushes.
+/// The double integral of each frame and its state while events arrive: the predicted window, gains
+/// and event counts of all pixels. Handles changes of size and flushes of the event lists.
 ///
 /// Per-pixel memory is taken only once a frame of the sensor's size has come, so that a nonsensical
 /// size in an event array costs nothing.
@@ -28,9 +27,9 @@ class WindowIntegral {
   /// \return false while it cannot be used
   /// \pre events.lists() is not null
   bool prepare(EventStream& events, const DeblurParameters& parameters, bool may_allocate);
-  /// Takes over thresholds, weighting and level model.
+  /// Changes thresholds, weighting and level model.
   void adopt(const DeblurParameters& parameters);
-  void forgetPrediction() { predicted_.reset(); }
+  void resetPrediction() { predicted_.reset(); }
 
   // All of them need \pre prepare() was true.
 
@@ -40,8 +39,8 @@ class WindowIntegral {
   /// \param counts whether events are counted, too
   void accumulate(const PixelEventLists& lists, bool counts);
   /// Gains and, if \p counts, event counts of a window, in event time.
-  CloseReport integrate(const PixelEventLists& lists, const ExposureInterval& window,
-                        std::int64_t reference_ns, bool counts);
+  IntegrationReport integrate(const PixelEventLists& lists, const ExposureInterval& window,
+                              std::int64_t reference_ns, bool counts);
 
   /// Of the last window; filters work in place.
   std::vector<float>& gains() { return gains_; }

@@ -153,7 +153,7 @@ class Aedat2Reader : public Recording {
 
   void take() { offset_ += kRecordBytes; }
 
-  /// Times have 32 bits and start anew every 71 minutes.
+  /// Times have 32 bits and wrap around every 71 minutes.
   std::int64_t unwrapped(std::uint32_t t_us) const {
     constexpr std::uint32_t kHalf = 1U << 31;
     const bool wrapped = t_us < last_us_ && last_us_ - t_us > kHalf && high_us_ < kMaxWraps;
@@ -292,7 +292,7 @@ class Aedat2Reader : public Recording {
   std::vector<std::uint8_t> block_;
   std::uint64_t block_begin_ = 0;
   std::uint64_t block_end_ = 0;
-  std::int64_t high_us_ = 0;  ///< how often times have started anew
+  std::int64_t high_us_ = 0;  ///< how often times have wrapped around
   std::uint32_t last_us_ = 0;
   std::int64_t record_ns_ = 0;
   std::vector<Event> given_;

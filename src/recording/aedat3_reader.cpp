@@ -189,7 +189,7 @@ class Aedat3Reader : public Recording {
     left_ -= events;
   }
 
-  /// Times of a packet's events; nothing for one that no stamp can tell.
+  /// Times of a packet's events; nothing for one that no stamp can hold.
   std::optional<std::int64_t> stampOf(const std::uint8_t* data) const {
     const auto t_us = numberAt<std::int32_t>(data);
     // A larger count of overflows is no time of a camera, and its nanoseconds would not fit.

@@ -61,7 +61,7 @@ Number read(const std::uint8_t* bytes) {
   return number;
 }
 
-/// Nothing for a time that no stamp can tell.
+/// Nothing for a time that no stamp can hold.
 std::optional<std::int64_t> stampOf(std::int64_t t_us) {
   constexpr std::int64_t kLast_us = kLastStamp_ns / kNanosecondsPerMicrosecond;
   return t_us >= 0 && t_us <= kLast_us ? std::optional(t_us * kNanosecondsPerMicrosecond)
@@ -298,7 +298,7 @@ class Aedat4Reader::Impl {
 
   FlatBytes bytes() const { return {buffer_.data(), buffer_.size()}; }
 
-  /// Where no description tells of the streams: by the identifiers of the first packets.
+  /// Without a description of the streams: by the identifiers of the first packets.
   void findStreams() {
     constexpr int kPacketsLookedAt = 64;
     const std::vector<RecordingDamage> before = damage_;
@@ -324,7 +324,7 @@ class Aedat4Reader::Impl {
     rewind(before);
   }
 
-  /// The size of events that nothing tells is that of the first frame.
+  /// Events of unknown size have that of the first frame.
   void sizeFromFirstFrame() {
     const bool missing = std::any_of(streams_.begin(), streams_.end(), [](const auto& stream) {
       return stream.kind == StreamKind::kEvents && stream.size.pixelCount() == 0;

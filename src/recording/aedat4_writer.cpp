@@ -408,7 +408,7 @@ class Aedat4Writer::Impl {
   const Compression compression_;
   std::ofstream file_;
   std::int64_t offset_ = 0;         ///< bytes written
-  std::streamoff table_place_ = 0;  ///< of the header's field that tells where the table is
+  std::streamoff table_place_ = 0;  ///< of the header's field with the place of the table
   std::vector<TableRow> table_;
   std::vector<std::vector<RecordedImu>> pending_samples_;  ///< of each stream
   std::vector<WrittenEvent> written_;

@@ -1,7 +1,6 @@
 /// \file
-/// Messages of ROS 2 that are the same in every recording, field by field: sensor_msgs and the
-/// header that all begin with. Whoever calls these looks at CdrReader::ok() first: a message that
-/// ends within its fields is no other fault.
+/// Messages of ROS 2, field by field: sensor_msgs and std_msgs/Header. Callers check
+/// CdrReader::ok() first: of a message that ends within its fields, no other fault is reported.
 #pragma once
 
 #include <cstdint>

@@ -38,7 +38,7 @@ struct EventPacket {
   std::size_t size = 0;
 };
 
-/// Keeps what one packet tells the next one; there is one for each topic.
+/// Keeps the state between packets; there is one for each topic.
 class EventPacketDecoder {
  public:
   /// Starts with a packet; its data must outlive decoding.

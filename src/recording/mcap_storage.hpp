@@ -68,7 +68,7 @@ class McapStorage : public Rosbag2Storage {
     }
   };
 
-  /// What the records in the file itself tell of the whole.
+  /// What the records in the file say about the whole of it.
   struct Overview {
     bool complete = false;  ///< there is an end
     std::uint64_t chunks = 0;
@@ -85,7 +85,7 @@ class McapStorage : public Rosbag2Storage {
   std::uint64_t findChunk(std::uint64_t from);
   void addSchema(const std::uint8_t* content, std::size_t size);
   void addChannel(const std::uint8_t* content, std::size_t size);
-  /// Topics that only the chunks tell of: those of an interrupted recording.
+  /// Topics that only the chunks contain: those of an interrupted recording.
   void findTopicsInChunks();
   /// \return what is wrong; empty if nothing is
   std::string loadChunk(const Record& record, std::vector<std::uint8_t>& records);

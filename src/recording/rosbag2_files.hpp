@@ -13,10 +13,10 @@
 
 namespace fast_edi {
 
-/// What a rosbag2's metadata.yaml, or its folder, tells.
+/// What a rosbag2's metadata.yaml or its folder contains.
 struct Rosbag2Files {
   std::vector<std::string> paths;    ///< in the order of time
-  std::vector<Rosbag2Topic> topics;  ///< as far as metadata.yaml tells
+  std::vector<Rosbag2Topic> topics;  ///< as far as metadata.yaml has them
   std::optional<std::uint64_t> messages;
   std::vector<std::string> faults;
 };

@@ -45,7 +45,7 @@ class Rosbag2Storage {
   virtual const std::vector<Rosbag2Topic>& topics() const = 0;
   /// \return false at the end
   virtual bool next(Rosbag2Message& message) = 0;
-  /// Begins anew, as if no message had been read.
+  /// Restarts, as if no message had been read.
   void rewind() {
     damage_.resize(std::min(damage_.size(), first_notes_));
     restart();

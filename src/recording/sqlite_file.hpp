@@ -53,7 +53,7 @@ struct SqliteFinalise {
 };
 using SqliteStatement = std::unique_ptr<sqlite3_stmt, SqliteFinalise>;
 
-/// \return null when SQLite refuses it; sqlite3_errmsg() tells why
+/// \return null when SQLite refuses it; sqlite3_errmsg() says why
 SqliteStatement prepare(sqlite3* handle, const char* sql);
 
 }  // namespace fast_edi

@@ -2,7 +2,7 @@
 /// Two sets of simulated sequences over many sensors, fixed before anything was tuned on either.
 ///
 /// **Choosing**: filters, models and their parameters may be chosen on it, as often as one likes.
-/// **Judging**: tells what the choice is worth on a camera and a scene that nobody has looked at.
+/// **Judging**: measures the choice on a camera and a scene that were not used for it.
 /// Its textures, photographs and seeds occur nowhere else, and its figures are never a reason for a
 /// change of a parameter: who tunes on it destroys it.
 ///

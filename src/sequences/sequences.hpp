@@ -2,7 +2,7 @@
 /// The fixed set of simulated sequences on which methods are compared. Scenes, noise and mismatch
 /// must not change with a method.
 ///
-/// Six scenes, each with two seeds (seeds draw texture, path, thresholds and noise anew):
+/// Six scenes, each with two seeds (a seed determines texture, path, thresholds and noise):
 ///
 /// | scene               | texture      | motion | light | for tuning |
 /// |---------------------|--------------|--------|-------|------------|

@@ -1,5 +1,5 @@
 /// \file
-/// What tells from the events alone whether some were taken out: polarities, times between events
+/// Statistics that show whether events were filtered out: polarities, times between events
 /// of a pixel and of neighbours, pixels that never rest.
 #pragma once
 

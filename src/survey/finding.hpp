@@ -20,7 +20,7 @@ struct Finding {
   std::string set;  ///< what to do: a parameter line, a driver setting
 };
 
-/// Values to be set, as far as the recording tells them.
+/// Values to be set, as far as the recording determines them.
 struct ParameterProposal {
   ExposureInstant stamp_reference = ExposureInstant::kMid;
   std::int64_t time_offset_us = 0;

@@ -14,7 +14,7 @@ FrameLog::FrameLog() : pairing_(kPairingTimeout_ns, counters_) {}
 
 void FrameLog::apply(const std::vector<ExposureMatch>& matches) {
   for (const ExposureMatch& match : matches) {
-    frames_[match.image].length_ns = match.own_ns.value_or(0);
+    frames_[match.image].length_ns = match.length_ns.value_or(0);
   }
 }
 

@@ -65,7 +65,7 @@ std::optional<ExposureInterval> modelledExposure(const SampledFrame& frame,
   return exposure;
 }
 
-void markTelling(TimingSample& sample, const ExposureInterval& interval) {
+void markInformative(TimingSample& sample, const ExposureInterval& interval) {
   const PixelEventLists& events = *sample.events;
   std::vector<int> count(events.size().pixelCount());
   std::vector<int> net(count.size());
@@ -79,10 +79,10 @@ void markTelling(TimingSample& sample, const ExposureInterval& interval) {
     }
     sequence += span.count;
   }
-  sample.telling.resize(count.size());
+  sample.informative.resize(count.size());
   for (std::size_t i = 0; i < count.size(); ++i) {
     const int change = std::abs(net[i]);
-    sample.telling[i] =
+    sample.informative[i] =
         change >= kLeastChange && count[i] <= kMostEventsPerChange * change + kSpareEvents ? 1 : 0;
   }
 }
@@ -145,17 +145,17 @@ std::optional<Consistency> PairConsistency::measure(const TimingSample& sample,
     return std::nullopt;
   }
   integral_.setThresholds(thresholds);
-  integral_.close(events, *first, first_ns, first_gain_.data());
-  integral_.forget();
-  integral_.close(events, *second, second_ns, second_gain_.data());
-  integral_.forget();
+  integral_.integrate(events, *first, first_ns, first_gain_.data());
+  integral_.reset();
+  integral_.integrate(events, *second, second_ns, second_gain_.data());
+  integral_.reset();
   addLevels(events, *first, *second, thresholds);
 
   Correlation correlation;
   double cost = 0.0;
   for (std::size_t i = 0; i < level_.size(); ++i) {
     const float change = sample.second.log_exposure[i] - sample.first.log_exposure[i];
-    if (std::isnan(change) || (!sample.telling.empty() && sample.telling[i] == 0)) {
+    if (std::isnan(change) || (!sample.informative.empty() && sample.informative[i] == 0)) {
       continue;
     }
     // gain = 1 / E

@@ -15,7 +15,7 @@
 ///
 /// For the right exposures r is noise. Two measures:
 ///
-/// - correlation of log B2 - log B1 with m over the pixels: needs no thresholds, tells inverted
+/// - correlation of log B2 - log B1 with m over the pixels: needs no thresholds, reveals inverted
 ///   polarities by its sign; coarse;
 /// - cost: mean of log(1 + (r / s)^2), s = 0.3: robust, sharp at the optimum.
 #pragma once
@@ -49,9 +49,9 @@ struct Consistency {
   double correlation = 0.0;
 };
 
-/// Marks the pixels that tell something: an edge has passed (events of mostly one polarity) from
+/// Marks the informative pixels: an edge has passed (events of mostly one polarity) from
 /// the first exposure to the second. Noise alone would not do.
-void markTelling(TimingSample& sample, const ExposureInterval& interval);
+void markInformative(TimingSample& sample, const ExposureInterval& interval);
 
 class PairConsistency {
  public:

@@ -19,7 +19,7 @@
 
 namespace fast_edi {
 
-/// The settings that the recording is held against.
+/// The settings that the recording is compared with.
 struct AssumedParameters {
   ContrastThresholds thresholds{0.25, 0.25};
   bool thresholds_given = false;

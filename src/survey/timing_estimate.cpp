@@ -19,7 +19,7 @@ constexpr double kFinestCoarse_ns = 1.5 * kMs;
 constexpr double kWidestCoarse_ns = 5.0 * kMs;
 /// An unknown exposure is taken as this part of the frame period to begin with.
 constexpr double kGuessedDuty = 0.3;
-/// Lengths that differ by less do not tell what stamps mean.
+/// Lengths that vary less do not show what stamps mean.
 constexpr double kLeastVariation = 0.04;
 constexpr int kCurveSteps = 6;  ///< of the fine curve, to either side
 constexpr int kBootstraps = 200;
@@ -63,7 +63,7 @@ double mean(const std::vector<double>& values) {
 
 /// Position of the least value of points at -n .. n, by a parabola through the least and its
 /// neighbours; at the edges, the edge.
-double leastOf(const std::vector<double>& values) {
+double minimumPosition(const std::vector<double>& values) {
   const auto least =
       static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
   const std::size_t centre = values.size() / 2;
@@ -103,7 +103,7 @@ std::vector<double> columnSums(const CostTable& table, const std::vector<std::si
   return sums;
 }
 
-struct Located {
+struct LocatedMinimum {
   double position = 0.0;
   double sigma = 0.0;
 };
@@ -120,13 +120,13 @@ std::vector<std::size_t> drawRows(std::mt19937& random, std::size_t count) {
 using Finder = std::function<double(const std::vector<double>& sums)>;
 
 /// \param find by default the minimum itself
-/// \return the minimum of a table's column sums and how far it moves when samples are drawn anew
-Located locate(const CostTable& table, const Finder& find = leastOf) {
+/// \return the minimum of a table's column sums and its bootstrap uncertainty
+LocatedMinimum locate(const CostTable& table, const Finder& find = minimumPosition) {
   std::vector<std::size_t> all(table.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     all[i] = i;
   }
-  Located located;
+  LocatedMinimum located;
   located.position = find(columnSums(table, all));
   std::mt19937 random(1);  // equal recordings give equal reports
   double squares = 0.0;
@@ -150,7 +150,7 @@ class Estimator {
  private:
   void readLengths();
   bool searchCoarsely();
-  void tellPixels();
+  void selectPixels();
   std::optional<double> cost(const Guess& guess);
   void descend(bool with_length);
   void chooseReference();
@@ -220,7 +220,7 @@ bool Estimator::searchCoarsely() {
   result_.mapping = match.mapping;
   result_.correlation = match.correlation;
   if (!match.fits()) {
-    result_.why_not = textOf(
+    result_.reason = textOf(
         "frames and events do not fit together at any shift within %.0f ms, in no orientation "
         "(correlation %.2f at best, expected at least %.2f): too little motion, or events are "
         "missing",
@@ -231,12 +231,12 @@ bool Estimator::searchCoarsely() {
   return true;
 }
 
-void Estimator::tellPixels() {
+void Estimator::selectPixels() {
   for (TimingSample& sample : samples_) {
     const auto first = modelledExposure(sample.first, best_.model);
     const auto second = modelledExposure(sample.second, best_.model);
     if (first && second) {
-      markTelling(sample, {first->start_ns, second->end_ns});
+      markInformative(sample, {first->start_ns, second->end_ns});
     }
   }
 }
@@ -387,11 +387,11 @@ void Estimator::refineShift() {
   }
   const CostTable costs = table(guesses);
   if (costs.size() < 2) {
-    result_.why_not = "fewer than two pairs of frames have all events around them";
+    result_.reason = "fewer than two pairs of frames have all events around them";
     return;
   }
   result_.samples = costs.size();
-  const Located located = locate(costs);
+  const LocatedMinimum located = locate(costs);
   best_.model.shift_ns += located.position * step_ns;
   result_.offset_ns = best_.model.shift_ns;
   result_.shift_ns = best_.model.shift_ns + best_.model.part * result_.length_ns;
@@ -423,13 +423,13 @@ void Estimator::checkLength() {
   if (costs.size() < 2) {
     return;
   }
-  const Located located = locate(costs, [](const std::vector<double>& sums) {
+  const LocatedMinimum located = locate(costs, [](const std::vector<double>& sums) {
     std::vector<double> lengths;
     constexpr std::ptrdiff_t kScales = std::ptrdiff_t{2} * kScaleSteps + 1;
     for (auto row = sums.begin(); row != sums.end(); row += kScales) {
       lengths.push_back(leastValue({row, row + kScales}));
     }
-    return leastOf(lengths);
+    return minimumPosition(lengths);
   });
   result_.length_factor = std::exp(located.position * kLengthStep);
   result_.length_sigma = std::hypot(located.sigma * kLengthStep, kLengthModelError);
@@ -460,7 +460,7 @@ TimingEstimate Estimator::run() {
   result_.samples = samples_.size();
   result_.frames_stretched = areStretched(samples_);
   if (samples_.size() < 2) {
-    result_.why_not = "fewer than two pairs of frames have all events around them";
+    result_.reason = "fewer than two pairs of frames have all events around them";
     return result_;
   }
   best_.thresholds = search_.thresholds;
@@ -470,7 +470,7 @@ TimingEstimate Estimator::run() {
     return result_;
   }
   step(1);
-  tellPixels();
+  selectPixels();
   descend(!lengths_known_);
   step(2);
   chooseReference();

@@ -7,11 +7,12 @@
 /// shift, thresholds and, where it is not known, length. Uncertainty: bootstrap over the samples.
 ///
 /// The shift contains the delay of the pixels' photoreceptors, which is half a millisecond in
-/// bright and some milliseconds in dim light: events cannot tell it from an offset of the clocks.
+/// bright and some milliseconds in dim light: events cannot distinguish it from an offset of the
+/// clocks.
 ///
 /// With equal exposure times only the shift of the exposures' middles against the stamps can be
 /// seen: a stamp at the start looks like an offset of half an exposure. Where lengths vary by more
-/// than some percent, the part of the length that the shift contains tells what stamps mean.
+/// than some percent, the part of the length that the shift contains shows what stamps mean.
 #pragma once
 
 #include <cstdint>
@@ -36,16 +37,17 @@ struct TimingSearch {
 
 struct TimingEstimate {
   bool told = false;
-  std::string why_not;  ///< when not told
+  std::string reason;  ///< why there is no estimate
   std::size_t samples = 0;
   double correlation = 0.0;  ///< of what frames and events say, at the best shift
 
-  EventMapping mapping;   ///< what fits events to frames; what follows is for events so turned
+  EventMapping
+      mapping;  ///< what fits events to frames; what follows is for events mapped like this
   double shift_ns = 0.0;  ///< middle of the exposure - stamp, in event time
   double shift_sigma_ns = 0.0;
   double length_ns = 0.0;  ///< mean, as known or as found
 
-  /// Lengths vary enough to tell what stamps mean; then offset_ns is what is left.
+  /// Lengths vary enough to find what stamps mean; then offset_ns is what is left.
   std::optional<ExposureInstant> reference;
   double offset_ns = 0.0;
   bool lengths_one_late = false;  ///< each length belongs to the frame before

@@ -29,7 +29,7 @@ struct TimingSample {
   SampledFrame first;
   SampledFrame second;
   std::unique_ptr<PixelEventLists> events;
-  std::vector<std::uint8_t> telling;  ///< row-major, 0: the pixel tells nothing; empty: all may
+  std::vector<std::uint8_t> informative;  ///< row-major, 0: the pixel is not; empty: all may be
 };
 
 /// Which pair of frames a sample is to hold, and which events, in event time.

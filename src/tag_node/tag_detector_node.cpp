@@ -49,11 +49,11 @@ TagDetectorNode::TagDetectorNode(const ros::NodeHandle& nh, const ros::NodeHandl
   }
   report_timer_ =
       nh_.createSteadyTimer(kReportPeriod, [this](const ros::SteadyTimerEvent&) { report(); });
-  side_thread_.start();
+  callback_thread_.start();
 }
 
 TagDetectorNode::~TagDetectorNode() {
-  side_thread_.stop();
+  callback_thread_.stop();
   report_timer_.stop();  // which looks at the inputs
   inputs_.reset();
   detections_publisher_.shutdown();
@@ -78,7 +78,7 @@ void TagDetectorNode::advertise() {
   };
   const image_transport::SubscriberStatusCallback image_changed =
       [this](const image_transport::SingleSubscriberPublisher&) { subscribersChanged(); };
-  ros::NodeHandle nh = side_thread_.handle(nh_);
+  ros::NodeHandle nh = callback_thread_.handle(nh_);
   detections_publisher_ =
       nh.advertise<visualization_msgs::MarkerArray>("detections", kOutputQueue, changed, changed);
   annotated_publisher_ = image_transport::ImageTransport(nh).advertise(
@@ -102,7 +102,7 @@ std::unique_ptr<TagDetectorNode::Inputs> TagDetectorNode::subscribe() {
 
 void TagDetectorNode::subscribersChanged() {
   std::unique_ptr<Inputs> ended;  // destroyed after the mutex is released
-  guarded([this, &ended] {
+  withLock([this, &ended] {
     if (!parameters_.lazy) {
       return;
     }
@@ -117,7 +117,7 @@ void TagDetectorNode::subscribersChanged() {
 }
 
 template <typename Work>
-void TagDetectorNode::guarded(Work&& work) {
+void TagDetectorNode::withLock(Work&& work) {
   const std::lock_guard<std::mutex> lock(mutex_);
   callback_start_ns_ = steadyNow();
   try {
@@ -130,7 +130,7 @@ void TagDetectorNode::guarded(Work&& work) {
 }
 
 void TagDetectorNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
-  guarded([&] {
+  withLock([&] {
     snapshot_.last_frame_ns = callback_start_ns_;
     snapshot_.frame_gaps += gaps_.step(message->header.seq) == SequenceStep::kGap ? 1 : 0;
     const ImageReading reading = readImage(*message);
@@ -150,7 +150,7 @@ void TagDetectorNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
 }
 
 void TagDetectorNode::receiveCameraInfo(const sensor_msgs::CameraInfoConstPtr& message) {
-  guarded([&] { camera_info_ = message; });
+  withLock([&] { camera_info_ = message; });
 }
 
 void TagDetectorNode::publish(const sensor_msgs::Image& image,
@@ -173,7 +173,7 @@ void TagDetectorNode::publish(const sensor_msgs::Image& image,
 }
 
 void TagDetectorNode::report() {
-  guarded([&] {
+  withLock([&] {
     snapshot_.time_ns = callback_start_ns_;
     snapshot_.configuration_error = configuration_error_;
     snapshot_.listening = inputs_ != nullptr;

@@ -20,15 +20,15 @@
 #include "fast_edi/config/tag_detector_parameters.hpp"
 #include "fast_edi/events/sequence_gaps.hpp"
 #include "fast_edi/tags/tag_detector.hpp"
+#include "node/callback_thread.hpp"
 #include "node/latency_record.hpp"
-#include "node/side_thread.hpp"
 #include "node/throttled_warnings.hpp"
 #include "tag_node/tag_diagnostics.hpp"
 
 namespace fast_edi {
 
 /// Threads: see DeblurNode. No exception leaves a callback: one that gets here is logged and
-/// reported, and the next image starts anew.
+/// reported; the next image is processed as usual.
 class TagDetectorNode {
  public:
   /// A configuration that cannot be used is logged and reported on /diagnostics; the object then
@@ -62,7 +62,7 @@ class TagDetectorNode {
 
   /// Runs a callback's work under the mutex.
   template <typename Work>
-  void guarded(Work&& work);
+  void withLock(Work&& work);
 
   ros::NodeHandle nh_;
   ros::NodeHandle private_nh_;
@@ -70,7 +70,7 @@ class TagDetectorNode {
   std::string image_topic_;
   std::string configuration_error_;
   TagDetectorParameters parameters_;
-  SideThread side_thread_;  ///< for subscribers that come and go; outlives the publishers
+  CallbackThread callback_thread_;  ///< for subscribers that come and go; outlives the publishers
 
   std::mutex mutex_;
   std::optional<TagDetector> detector_;  ///< empty when idle for good

@@ -110,7 +110,7 @@ class LiveRecording {
   LiveRecording(const std::string& path, std::string image_topic)
       : reader_(path), image_topic_(std::move(image_topic)) {}
 
-  /// The image with that stamp, if it was published. Earlier ones are forgotten.
+  /// The image with that stamp, if it was published. Earlier ones are discarded.
   sensor_msgs::ImageConstPtr take(const ros::Time& stamp) {
     while (images_.count(stamp) == 0 && readOne()) {
     }

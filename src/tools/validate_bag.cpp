@@ -54,10 +54,10 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   po::options_description visible("Options");
   visible.add_options()("help,h", "print this")(
       "config", po::value(&arguments.config)->value_name("YAML"),
-      "parameters that the recording is held against, e.g. cfg/davis346.yaml; without one, "
-      "thresholds are not judged")("output", po::value(&arguments.output)->value_name("FOLDER"),
-                                   "folder for a plot of the agreement of frames and events over "
-                                   "the shift of the exposures");
+      "parameters to compare the recording with, e.g. cfg/davis346.yaml; without one, "
+      "thresholds are not checked")("output", po::value(&arguments.output)->value_name("FOLDER"),
+                                    "folder for a plot of the agreement of frames and events over "
+                                    "the shift of the exposures");
   tools::addTopicOptions(visible, topics);
   tools::addForceOption(visible, arguments.overwrite);
   std::vector<std::string> words;
@@ -186,7 +186,7 @@ std::string curvePath(const Arguments& arguments) {
 void drawCurve(const std::string& path, const fast_edi::TimingEstimate& timing) {
   fs::create_directories(fs::path(path).parent_path());
   if (timing.curve.empty()) {
-    std::cerr << "warning: nothing to draw: " << timing.why_not << "\n";
+    std::cerr << "warning: nothing to draw: " << timing.reason << "\n";
     return;
   }
   fast_edi::PlotSeries correlation{"correlation", {}};

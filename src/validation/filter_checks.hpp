@@ -1,5 +1,5 @@
 /// \file
-/// Findings about events that somebody took out, and pixels that should be taken out.
+/// Findings about events that were filtered out, and pixels that should be.
 ///
 /// Background-activity filter: an event passes when one of its eight neighbours had an event within
 /// the filter's time. Times to the neighbours' last event then break off at that time, while they

@@ -30,7 +30,7 @@ Finding orientationFinding(const RecordingSurvey& survey, const TimingEstimate& 
                   textOf("they fit when the events are turned by %s (correlation %.2f)",
                          toString(estimate.mapping.orientation), std::abs(estimate.correlation)),
                   "event_orientation: " + word};
-  // The arrays' size tells which axis is which.
+  // The arrays' size shows which axis is which.
   const SensorSize size = survey.statistics()->size();
   const SensorSize frame = survey.frames().frames().front().size;
   if (estimate.mapping.apply(size) != frame) {
@@ -47,7 +47,7 @@ Finding orientationFinding(const RecordingSurvey& survey, const TimingEstimate& 
 }  // namespace
 
 EventMapping combined(const EventMapping& first, const EventMapping& second) {
-  // Corners of an oblong sensor tell all eight apart.
+  // Corners of an oblong sensor distinguish all eight.
   constexpr SensorSize kSize{3, 2};
   const Event corner{0, 0, 0, true};
   const Event side{1, 0, 0, true};

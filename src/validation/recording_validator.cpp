@@ -82,7 +82,7 @@ bool RecordingValidator::endSurvey() {
     return false;
   }
   if (polarityIsMissing(*survey_.statistics())) {
-    why_not_ = "one polarity is missing";
+    reason_ = "one polarity is missing";
     return false;
   }
   search_.thresholds = survey_.parameters().thresholds;
@@ -120,7 +120,7 @@ ValidationReport RecordingValidator::finish(std::function<void(int done, int tot
   }
   append(report.findings, checkCoverage(survey_));
   append(report.findings, checkExposures(survey_));
-  report.timing.why_not = why_not_;
+  report.timing.reason = reason_;
   if (sampler_) {
     search_.progress = std::move(progress);
     const SampleGrid grid = sampler_->grid();

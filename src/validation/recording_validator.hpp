@@ -38,7 +38,7 @@ class RecordingValidator {
                  std::int64_t record_ns);
   void addFrame(const FrameMessage& frame);
   void addExposure(std::int32_t exposure_us, std::int64_t record_ns);
-  /// Ends the first pass. \return false when a second one would tell nothing more
+  /// Ends the first pass. \return false when a second one would find nothing more
   bool endSurvey();
   /// \param progress of the estimate
   ValidationReport finish(std::function<void(int done, int total)> progress);
@@ -54,7 +54,7 @@ class RecordingValidator {
   std::unique_ptr<TimingSampler> sampler_;  ///< during the second pass
   std::size_t sampled_frames_ = 0;
   std::optional<ExposuresByEvents> by_events_;
-  std::string why_not_ = "no pair of frames has events around it";
+  std::string reason_ = "no pair of frames has events around it";
 };
 
 }  // namespace fast_edi

@@ -209,7 +209,7 @@ TimingVerdict judgeTiming(const RecordingSurvey& survey, const TimingEstimate& e
     verdict.notes.push_back(
         "stamps, offset and exposure cannot be told: " +
         (estimate.told ? textOf("the shift is uncertain by %.1f ms", estimate.shift_sigma_ns / kMs)
-                       : estimate.why_not));
+                       : estimate.reason));
     if (roughly) {
       verdict.notes.push_back(
           "time_offset_us is by the times of recording, good to some ten milliseconds");

@@ -33,7 +33,7 @@ void LatentVideo::take(const OutputFrame& output, std::uint64_t epoch,
   gain_.resize(gain.size());
 }
 
-void LatentVideo::breakOff() {
+void LatentVideo::interrupt() {
   has_current_ = false;
   has_last_ = false;
   current_.input = {};
@@ -82,8 +82,8 @@ std::size_t LatentVideo::show(Source& source, const std::vector<std::int64_t>& i
   std::size_t images = 0;
   // Whichever frame it is: those up to the end of the later exposure have come.
   const std::int64_t known_until_ns = current_.exposure.end_ns + current_.offset_ns;
-  const bool steadies = !instants.empty() && !source.middle.empty();
-  if (steadies) {
+  const bool stabilises = !instants.empty() && !source.middle.empty();
+  if (stabilises) {
     compensation_.setReference(source.middle.view());
   }
   for (const std::int64_t t_ns : instants) {
@@ -96,7 +96,7 @@ std::size_t LatentVideo::show(Source& source, const std::vector<std::int64_t>& i
     const MutableImageView out = sink_.beginLatent(source.input);
     latent_image_.write(source.input.image, gain_.data(),
                         {source.counts.data(), parameters.thresholds}, parameters.response, out);
-    if (steadies) {
+    if (stabilises) {
       compensation_.apply(out);
     }
     sink_.finishLatent(source.input, t_ns);

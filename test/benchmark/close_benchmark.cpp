@@ -28,7 +28,7 @@ void addAll() {
     for (const std::size_t events : {10'000, 100'000, 400'000, 1'000'000, 5'000'000}) {
       const StreamSettings settings{EventScene::kUniform, size, events};
       for (const Exposures exposures :
-           {Exposures::kPeriodic, Exposures::kJittering, Exposures::kSurprise}) {
+           {Exposures::kPeriodic, Exposures::kJittering, Exposures::kNotPredicted}) {
         add(Method::kOurs, exposures, settings);
       }
       add(Method::kPaper, Exposures::kPeriodic, settings);
@@ -36,12 +36,12 @@ void addAll() {
   }
   for (const std::size_t events : {400'000, 5'000'000}) {
     for (const Exposures exposures :
-         {Exposures::kPeriodic, Exposures::kJittering, Exposures::kSurprise}) {
+         {Exposures::kPeriodic, Exposures::kJittering, Exposures::kNotPredicted}) {
       add(Method::kOurs, exposures, {EventScene::kMovingEdges, {346, 260}, events});
     }
   }
   for (const EventScene scene : {EventScene::kHotPixel, EventScene::kBursts}) {
-    for (const Exposures exposures : {Exposures::kPeriodic, Exposures::kSurprise}) {
+    for (const Exposures exposures : {Exposures::kPeriodic, Exposures::kNotPredicted}) {
       add(Method::kOurs, exposures, {scene, {346, 260}, 1'000'000});
     }
   }

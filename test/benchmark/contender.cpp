@@ -57,14 +57,15 @@ class Ours : public Contender {
   std::string fault(Exposures exposures) const override {
     const DeblurCounters& counters = deblurrer_.counters();
     if (counters.frames_deblurred != frames_) return "a frame was passed through";
-    const std::uint64_t kind =
-        exposures == Exposures::kSurprise ? counters.closes_surprise : counters.closes_followed;
+    const std::uint64_t kind = exposures == Exposures::kNotPredicted
+                                   ? counters.windows_not_predicted
+                                   : counters.windows_predicted;
     // The first two frames cannot be predicted; a few more may lie across a quantum of time.
     constexpr std::uint64_t kLearning = 2;
     if (10 * kind < 8 * (frames_ - kLearning)) {
-      return std::to_string(counters.closes_followed) + " windows followed, " +
-             std::to_string(counters.closes_surprise) + " surprises, expected mostly " +
-             (exposures == Exposures::kSurprise ? "surprises" : "followed ones");
+      return std::to_string(counters.windows_predicted) + " windows predicted, " +
+             std::to_string(counters.windows_not_predicted) + " not predicted, expected mostly " +
+             (exposures == Exposures::kNotPredicted ? "the latter" : "the former");
     }
     return {};
   }
@@ -129,8 +130,8 @@ const char* toString(Exposures exposures) {
       return "periodic";
     case Exposures::kJittering:
       return "jittering";
-    case Exposures::kSurprise:
-      return "surprise";
+    case Exposures::kNotPredicted:
+      return "unpredicted";
   }
   return "unknown";
 }

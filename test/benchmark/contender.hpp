@@ -14,9 +14,9 @@ namespace fast_edi::benchmarks {
 
 /// How the exposures of a run lie; decides what can be known of them beforehand.
 enum class Exposures {
-  kPeriodic,   ///< as predicted
-  kJittering,  ///< a few us off: the prediction has to be corrected
-  kSurprise,   ///< some ms off: the prediction is of no use
+  kPeriodic,      ///< as predicted
+  kJittering,     ///< a few us off: the prediction has to be corrected
+  kNotPredicted,  ///< some ms off: the prediction is of no use
 };
 const char* toString(Exposures exposures);
 

@@ -32,7 +32,7 @@ void addAll() {
     for (const std::size_t events : {400'000, 5'000'000}) {
       const StreamSettings settings{scene, kDavis346, events};
       add(Method::kOurs, Exposures::kPeriodic, settings);
-      add(Method::kOurs, Exposures::kSurprise, settings);
+      add(Method::kOurs, Exposures::kNotPredicted, settings);
       add(Method::kOursFiltered, Exposures::kPeriodic, settings);
       add(Method::kPaper, Exposures::kPeriodic, settings);
     }

@@ -34,7 +34,7 @@ FrameRun::FrameRun(Method method, Exposures exposures, PeriodicStream& stream)
 ExposureInterval FrameRun::nextExposure() {
   ExposureInterval exposure = stream_.exposure();
   const std::int64_t offset_ns = exposures_ == Exposures::kJittering ? inTurn(kJitters_ns, frame_)
-                                 : exposures_ == Exposures::kSurprise
+                                 : exposures_ == Exposures::kNotPredicted
                                      ? inTurn(kSurprises_ns, frame_)
                                      : 0;
   exposure.start_ns += offset_ns;

@@ -56,7 +56,7 @@ def close_time(results, folder):
     for axes, size in zip(all_axes, SIZES):
         for exposures, label in (('periodic', 'fast_edi, exposure predicted'),
                                  ('jittering', 'fast_edi, prediction corrected'),
-                                 ('surprise', 'fast_edi, exposure a surprise')):
+                                 ('unpredicted', 'fast_edi, exposure not predicted')):
             draw(axes, results.curve('close/ours/%s/uniform/%s' % (exposures, size), 'close_ms'),
                  label, marker='o')
         draw(axes, results.curve('close/paper/periodic/uniform/' + size, 'close_ms'),
@@ -73,7 +73,7 @@ def during_and_after(results, folder):
     rows = []
     for events in (400000, 5000000):
         for method, exposures, label in (('ours', 'periodic', 'fast_edi'),
-                                         ('ours', 'surprise', 'fast_edi, surprise'),
+                                         ('ours', 'unpredicted', 'fast_edi, not predicted'),
                                          ('paper', 'periodic', 'paper\'s lists')):
             name = 'end_to_end/%s/%s/uniform/346x260/%d' % (method, exposures, events)
             if name in results.benchmarks:

@@ -69,7 +69,7 @@ def end_to_end(results, table):
 
 def closing(results, table):
     for exposures, goals in (('periodic', (0.5, 1.0)), ('jittering', (None, None)),
-                             ('surprise', (1.5, 12.0))):
+                             ('unpredicted', (1.5, 12.0))):
         for events, goal in zip(EVENTS, goals):
             for scene in SCENES:
                 what = 'close, %s exposures, %s, %.1f M events' % (exposures, scene, events / 1e6)

@@ -68,10 +68,10 @@ class Exposure {
       stream.next();
       lists.append(stream.all());
       windows[i] = stream.exposure();
-      integral.close(lists, windows[i], reference(i), gain.data());
+      integral.integrate(lists, windows[i], reference(i), gain.data());
       gains[i] = gain;
     }
-    counts.close(lists, windows[1]);
+    counts.count(lists, windows[1]);
     for (std::size_t i = 0; i < gain.size(); ++i) {
       count.push_back(static_cast<float>(counts.off(i) + counts.on(i)));
       log_gain.push_back(std::log(gain[i]));

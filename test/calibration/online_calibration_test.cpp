@@ -110,7 +110,7 @@ Calibration calibrated(const RampScene& scene, ContrastThresholds nominal,
     window.end_ns += now.event_delay_ns;
     DoubleIntegral integral(kSize, now.thresholds, Weighting::kTime);
     const std::int64_t reference_ns = window.at(ExposureInstant::kMid);
-    integral.close(scene.lists(), window, reference_ns, gain.data());
+    integral.integrate(scene.lists(), window, reference_ns, gain.data());
     const std::vector<std::uint8_t> pixels = scene.frame(i);
     const ImageView image{pixels.data(), kSize, static_cast<std::size_t>(kSize.width),
                           PixelFormat::kMono8};
@@ -221,8 +221,8 @@ TEST_F(OnlineCalibrationPair, NoiseAloneTeachesNothing) {
 }
 
 TEST_F(OnlineCalibrationPair, RestsWhenNothingIsToBeLearned) {
-  eventsIn(0, (OnlineCalibration::kPatience + 1) * kPeriod_ns);
-  for (int i = 0; i <= OnlineCalibration::kPatience; ++i) {
+  eventsIn(0, (OnlineCalibration::kMaxUselessPairs + 1) * kPeriod_ns);
+  for (int i = 0; i <= OnlineCalibration::kMaxUselessPairs; ++i) {
     EXPECT_TRUE(calibration.wantsNextFrame()) << i;
     addFrame(i * kPeriod_ns);
   }

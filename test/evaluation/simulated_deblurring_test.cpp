@@ -134,7 +134,7 @@ TEST_F(SimulatedDeblurring, CounterWeightingEqualsArrayLikeEdi) {
   const ExposureInterval window{exposure.start_ns,
                                 exposure.start_ns + 3 * kNanosecondsPerMillisecond};
   const std::int64_t reference_ns = window.at(ExposureInstant::kMid);
-  const CloseReport report = integral.close(lists, window, reference_ns, gain.data());
+  const IntegrationReport report = integral.integrate(lists, window, reference_ns, gain.data());
   ASSERT_GT(report.events, 1000u);
   vanilla.begin(window, reference_ns);
   for (const Event& event : noisy_->events) {

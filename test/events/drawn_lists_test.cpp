@@ -78,7 +78,7 @@ TEST(DrawnLists, ShowsTheDoubleIntegral) {
   for (const Weighting weighting : {Weighting::kTime, Weighting::kCounter}) {
     DoubleIntegral integral(kSize, kThresholds, weighting);
     std::vector<float> gain(kSize.pixelCount());
-    integral.close(lists, kExposure, kReference_ns, gain.data());
+    integral.integrate(lists, kExposure, kReference_ns, gain.data());
     EXPECT_THAT(shown, HasSubstr(formatted("= %.3f", 1.0 / static_cast<double>(gain[0]))));
   }
 }

@@ -51,11 +51,11 @@ TEST(EventCounts, CountTheEventsOfAnyWindowHoweverItWasFollowed) {
     if (!lists.hasNewest()) {
       continue;
     }
-    counts.follow(lists, windowUpTo(lists.newest() +
-                                    static_cast<std::int64_t>(random() % 20) * kMillisecond));
+    counts.accumulate(lists, windowUpTo(lists.newest() +
+                                        static_cast<std::int64_t>(random() % 20) * kMillisecond));
     if (random() % 3 == 0) {
       const ExposureInterval window = windowUpTo(lists.newest());
-      counts.close(lists, window);
+      counts.count(lists, window);
       ASSERT_EQ(countsOf(counts), slowCounts(events, window));
     }
   }
@@ -67,7 +67,7 @@ TEST(EventCounts, AnEventAtTheEndIsOutsideOneAtTheStartInside) {
   lists.append(Event{1, 0, kStart + 5, false});
   lists.append(Event{1, 0, kStart + 10, true});
   EventCounts counts(kSize);
-  counts.close(lists, {kStart, kStart + 10});
+  counts.count(lists, {kStart, kStart + 10});
   EXPECT_EQ(counts.on(1), 1);
   EXPECT_EQ(counts.off(1), 1);
   EXPECT_EQ(counts.on(0), 0);
@@ -81,13 +81,13 @@ TEST(EventCounts, EventsThatLeftTheLogDoNoHarm) {
   for (std::size_t i = 0; i < events.size(); ++i) {
     lists.append(events[i]);
     if (i == events.size() / 4) {
-      counts.follow(lists, {kStart, kStart + 200 * kMillisecond});
+      counts.accumulate(lists, {kStart, kStart + 200 * kMillisecond});
     }
   }
   lists.discardBefore(kStart + 150 * kMillisecond);
   ASSERT_GT(lists.beginSequence(), 0U);
   const ExposureInterval window{kStart + 160 * kMillisecond, kStart + 190 * kMillisecond};
-  counts.close(lists, window);
+  counts.count(lists, window);
   EXPECT_EQ(countsOf(counts), slowCounts(events, window));
 }
 
@@ -95,11 +95,11 @@ TEST(EventCounts, StartAnewWhenTheListsWereFlushed) {
   PixelEventLists lists(kSize, {});
   lists.append(Event{2, 2, kStart, true});
   EventCounts counts(kSize);
-  counts.follow(lists, {kStart, kStart + kMillisecond});
+  counts.accumulate(lists, {kStart, kStart + kMillisecond});
   lists.flush();
-  counts.forget();
+  counts.reset();
   lists.append(Event{3, 3, kStart, false});
-  counts.close(lists, {kStart, kStart + kMillisecond});
+  counts.count(lists, {kStart, kStart + kMillisecond});
   EXPECT_EQ(countsOf(counts),
             slowCounts({Event{3, 3, kStart, false}}, {kStart, kStart + kMillisecond}));
 }

@@ -53,13 +53,13 @@ class EventStreamTest : public ::testing::Test {
   }
 
   DeblurCounters counters;
-  std::vector<std::pair<StreamBreak, std::int64_t>> breaks;
+  std::vector<std::pair<StreamReset, std::int64_t>> breaks;
   std::size_t dropped = 0;  ///< on the way, before they came here
   std::size_t held = 0;     ///< events that the test expects to be held apart
   std::uint32_t sequence = 0;
   EventStream stream{
       PixelEventLists::Limits{1'000'000, kBackLimit, kForwardLimit}, counters,
-      [this](StreamBreak kind, std::int64_t next_ns) { breaks.emplace_back(kind, next_ns); }};
+      [this](StreamReset kind, std::int64_t next_ns) { breaks.emplace_back(kind, next_ns); }};
 };
 
 TEST_F(EventStreamTest, IsSeenFromTheFirstArrayOnEvenWhenItIsEmpty) {
@@ -208,7 +208,7 @@ TEST_F(EventStreamTest, AnotherSizeEmptiesTheListsAndIsCounted) {
   EXPECT_EQ(stream.lists()->size(), (SensorSize{8, 8}));
   EXPECT_EQ(buffered(), 1u);
   ASSERT_EQ(breaks.size(), 1u);
-  EXPECT_EQ(breaks[0], std::make_pair(StreamBreak::kSizeChange, kStart + 2 * kMs));
+  EXPECT_EQ(breaks[0], std::make_pair(StreamReset::kSizeChange, kStart + 2 * kMs));
   EXPECT_FALSE(stream.covers({kStart, kStart + kMs}));
   EXPECT_TRUE(stream.covers({kStart + 2 * kMs, kStart + 3 * kMs}));
 }
@@ -220,7 +220,7 @@ TEST_F(EventStreamTest, EventsThatStayBackAreAJump) {
   take({kStart + 2 * kMs, back, back + 1});
   EXPECT_EQ(counters.event_time_jumps, 1u);
   ASSERT_EQ(breaks.size(), 1u);
-  EXPECT_EQ(breaks[0], std::make_pair(StreamBreak::kTimeJump, back));
+  EXPECT_EQ(breaks[0], std::make_pair(StreamReset::kTimeJump, back));
   EXPECT_NE(stream.generation(), generation);
   EXPECT_EQ(buffered(), 2u);
   EXPECT_EQ(newest(), back + 1);
@@ -275,7 +275,7 @@ TEST_F(EventStreamTest, AJumpAheadEntersNothingUntilTheNextArrayConfirmsIt) {
   EXPECT_EQ(buffered(), 3u);
   EXPECT_EQ(newest(), ahead + 2 * kMs);
   ASSERT_EQ(breaks.size(), 1u);
-  EXPECT_EQ(breaks[0], std::make_pair(StreamBreak::kTimeJump, ahead));
+  EXPECT_EQ(breaks[0], std::make_pair(StreamReset::kTimeJump, ahead));
 }
 
 TEST_F(EventStreamTest, AJumpAheadThatTheNextArrayRefutesIsDropped) {

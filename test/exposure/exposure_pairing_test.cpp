@@ -42,7 +42,7 @@ class ExposurePairingTest : public ::testing::Test {
     std::vector<ExposureMatch> matches;
     call(matches);
     for (const ExposureMatch& match : matches) {
-      EXPECT_TRUE(ended.emplace(match.image, match.own_ns).second)
+      EXPECT_TRUE(ended.emplace(match.image, match.length_ns).second)
           << "image " << match.image << " was matched twice";
     }
   }
@@ -209,7 +209,7 @@ TEST_F(ExposurePairingTest, FinishEndsAllWaits) {
   ASSERT_EQ(matches.size(), 2u);
   EXPECT_EQ(matches[0].image, 1u);
   EXPECT_EQ(matches[1].image, 2u);
-  EXPECT_FALSE(matches[0].own_ns);
+  EXPECT_FALSE(matches[0].length_ns);
   EXPECT_EQ(counters.exposures_missing, 2u);
 }
 

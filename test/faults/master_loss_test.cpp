@@ -87,7 +87,7 @@ TEST(MasterLoss, UnderOverloadFramesComeOutAndEveryNodeCanBeUnloaded) {
   ros::start();
   configure("overloaded", 1);
   configure("other", 1'000'000);
-  const test::ChildProcess driver({FAST_EDI_MADE_UP_DRIVER, "__ns:=/camera"});
+  const test::ChildProcess driver({FAST_EDI_STUB_DRIVER, "__ns:=/camera"});
   Instance overloaded("overloaded", "deblurred");
   Instance other("other", "other");
   std::atomic<int> suspensions{0};

@@ -82,20 +82,20 @@ void fill(PixelEventLists& lists, const std::vector<Event>& events) {
 
 struct Closed {
   std::vector<float> gain;
-  CloseReport report;
+  IntegrationReport report;
 };
 
 Closed closeWith(DoubleIntegral& integral, const PixelEventLists& lists,
                  const ExposureInterval& window, std::int64_t reference_ns) {
   // A value that close() never writes, so that a pixel left out shows.
   Closed closed{std::vector<float>(lists.size().pixelCount(), -1.0f), {}};
-  closed.report = integral.close(lists, window, reference_ns, closed.gain.data());
+  closed.report = integral.integrate(lists, window, reference_ns, closed.gain.data());
   return closed;
 }
 
 /// Gains of a window that nobody announced, by an integral without a past.
-Closed surprise(const PixelEventLists& lists, const ContrastThresholds& thresholds,
-                const Model& model, const ExposureInterval& window, std::int64_t reference_ns) {
+Closed integrated(const PixelEventLists& lists, const ContrastThresholds& thresholds,
+                  const Model& model, const ExposureInterval& window, std::int64_t reference_ns) {
   DoubleIntegral integral(lists.size(), thresholds, model.weighting, model.level);
   return closeWith(integral, lists, window, reference_ns);
 }
@@ -130,7 +130,7 @@ TEST_P(DoubleIntegralAccuracy, IsWithinTheToleranceOfTheReference) {
       kWindow.start_ns +
       static_cast<std::int64_t>(reference_share * static_cast<double>(kWindow.length()));
 
-  const Closed closed = surprise(lists, scene.thresholds, model, kWindow, reference_ns);
+  const Closed closed = integrated(lists, scene.thresholds, model, kWindow, reference_ns);
   EXPECT_EQ(closed.report.out_of_range, 0u);
   expectReciprocals(
       closed.gain, referenceOf(model, scene.size, events, scene.thresholds, kWindow, reference_ns));
@@ -174,7 +174,7 @@ TEST(DoubleIntegral, WeighsCountersLikeVanillaEdiAndThePaper) {
       vanilla.add(event);
       paper.add(event);
     }
-    const Closed closed = surprise(lists, kEqual, kCounter, kWindow, reference_ns);
+    const Closed closed = integrated(lists, kEqual, kCounter, kWindow, reference_ns);
     expectReciprocals(closed.gain, vanilla.doubleIntegral());
     expectReciprocals(closed.gain, paper.close(kWindow, reference_ns));
   }
@@ -200,7 +200,7 @@ TEST_P(DoubleIntegralBorders, AreHalfOpen) {
        {kWindow.start_ns, kWindow.start_ns + 1, mid_ns - 1, mid_ns, mid_ns + 1, mid_ns + 2,
         kWindow.end_ns - 1, kWindow.end_ns}) {
     SCOPED_TRACE(reference_ns - kWindow.start_ns);
-    const Closed closed = surprise(lists, kUnequal, GetParam(), kWindow, reference_ns);
+    const Closed closed = integrated(lists, kUnequal, GetParam(), kWindow, reference_ns);
     EXPECT_EQ(closed.report.events, 5u);
     EXPECT_EQ(closed.gain[1], 1.0f);
     expectReciprocals(closed.gain,
@@ -228,7 +228,7 @@ TEST_P(DoubleIntegralBorders, HoldForEventsAroundThem) {
   Lists lists(size, {});
   fill(lists, events);
   for (const std::int64_t f_ns : {kWindow.start_ns, reference_ns, kWindow.end_ns}) {
-    const Closed closed = surprise(lists, kUnequal, GetParam(), kWindow, f_ns);
+    const Closed closed = integrated(lists, kUnequal, GetParam(), kWindow, f_ns);
     expectReciprocals(closed.gain, referenceOf(GetParam(), size, events, kUnequal, kWindow, f_ns));
   }
 }
@@ -238,9 +238,9 @@ TEST_P(DoubleIntegralBorders, LeaveStillPixelsExactlyAlone) {
   Lists lists(size, {});
   const std::vector<float> ones(size.pixelCount(), 1.0f);
   // Nothing at all; nothing inside; events in one pixel only.
-  EXPECT_EQ(surprise(lists, kUnequal, GetParam(), kWindow, kWindow.start_ns).gain, ones);
+  EXPECT_EQ(integrated(lists, kUnequal, GetParam(), kWindow, kWindow.start_ns).gain, ones);
   fill(lists, {{3, 3, kWindow.start_ns - 5, true}, {3, 3, kWindow.end_ns + 5, true}});
-  const Closed outside = surprise(lists, kUnequal, GetParam(), kWindow, kWindow.end_ns);
+  const Closed outside = integrated(lists, kUnequal, GetParam(), kWindow, kWindow.end_ns);
   EXPECT_EQ(outside.gain, ones);
   EXPECT_EQ(outside.report.events, 0u);
 
@@ -249,7 +249,7 @@ TEST_P(DoubleIntegralBorders, LeaveStillPixelsExactlyAlone) {
       makeEvents(EventScene::kUniform, {{1, 1}, 5000, kStart, 40 * kMillisecond, 3});
   fill(busy, events);
   std::vector<float> gain =
-      surprise(busy, kUnequal, GetParam(), kWindow, kWindow.at(ExposureInstant::kMid)).gain;
+      integrated(busy, kUnequal, GetParam(), kWindow, kWindow.at(ExposureInstant::kMid)).gain;
   EXPECT_NE(gain[0], 1.0f);
   gain[0] = 1.0f;
   EXPECT_EQ(gain, ones);
@@ -265,7 +265,7 @@ TEST_P(DoubleIntegralBorders, HoldEventsThatAllHaveOneTime) {
     Lists lists(size, {});
     fill(lists, events);
     for (const std::int64_t reference_ns : {kWindow.start_ns, t_ns, t_ns + 1, kWindow.end_ns}) {
-      expectReciprocals(surprise(lists, kUnequal, GetParam(), kWindow, reference_ns).gain,
+      expectReciprocals(integrated(lists, kUnequal, GetParam(), kWindow, reference_ns).gain,
                         referenceOf(GetParam(), size, events, kUnequal, kWindow, reference_ns));
     }
   }
@@ -284,7 +284,7 @@ TEST_P(DoubleIntegralBorders, HoldForWindowsFromNanosecondsToSeconds) {
     const std::int64_t start_ns = events[77].t_ns;
     const ExposureInterval window{start_ns, start_ns + length_ns};
     const std::int64_t reference_ns = window.at(ExposureInstant::kMid);
-    expectReciprocals(surprise(lists, kUnequal, GetParam(), window, reference_ns).gain,
+    expectReciprocals(integrated(lists, kUnequal, GetParam(), window, reference_ns).gain,
                       referenceOf(GetParam(), size, events, kUnequal, window, reference_ns));
   }
 }
@@ -304,7 +304,7 @@ TEST_P(DoubleIntegralBorders, CountPixelsBeyondTheRangeOfDouble) {
   fill(lists, events);
   for (const ExposureInstant reference :
        {ExposureInstant::kStart, ExposureInstant::kMid, ExposureInstant::kEnd}) {
-    const Closed closed = surprise(lists, kUnequal, GetParam(), kWindow, kWindow.at(reference));
+    const Closed closed = integrated(lists, kUnequal, GetParam(), kWindow, kWindow.at(reference));
     EXPECT_EQ(closed.gain[0], 1.0f);
     EXPECT_EQ(closed.gain[1], 1.0f);
     EXPECT_EQ(closed.report.out_of_range, 2u);
@@ -328,12 +328,12 @@ TEST(DoubleIntegral, TakesOverNewThresholds) {
   fill(lists, events);
   const std::int64_t reference_ns = kWindow.at(ExposureInstant::kMid);
   DoubleIntegral integral(kSmall, kEqual, Weighting::kTime);
-  integral.expect(kWindow, reference_ns);
-  integral.follow(lists);
+  integral.predictWindow(kWindow, reference_ns);
+  integral.accumulate(lists);
   integral.setThresholds(kUnequal);
   EXPECT_EQ(integral.thresholds(), kUnequal);
   EXPECT_EQ(closeWith(integral, lists, kWindow, reference_ns).gain,
-            surprise(lists, kUnequal, kTime, kWindow, reference_ns).gain);
+            integrated(lists, kUnequal, kTime, kWindow, reference_ns).gain);
 }
 
 // However a window was closed, the gains are the same, bit for bit.
@@ -347,26 +347,26 @@ class DoubleIntegralPaths : public ::testing::TestWithParam<Model> {
       : wire_(toWire(makeEvents(EventScene::kUniform,
                                 {kPathSize, kEvents, kStart, 40 * kMillisecond, 31}))) {}
 
-  /// Closes \p window after the stream has come in packets, followed on the way.
-  Closed followed(const ExposureInterval& expected, std::int64_t expected_reference_ns,
-                  const ExposureInterval& window, std::int64_t reference_ns,
-                  std::size_t packet = 1000) const {
+  /// Integrates \p window after the stream has come in packets, accumulated on the way.
+  Closed accumulated(const ExposureInterval& expected, std::int64_t expected_reference_ns,
+                     const ExposureInterval& window, std::int64_t reference_ns,
+                     std::size_t packet = 1000) const {
     Lists lists(kPathSize, {});
     DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
-    integral.expect(expected, expected_reference_ns);
+    integral.predictWindow(expected, expected_reference_ns);
     for (WireEvents rest = wireView(wire_); !rest.empty();) {
       const std::size_t count = std::min(packet, rest.count);
       lists.append(WireEvents{rest.data, count});
-      integral.follow(lists);
+      integral.accumulate(lists);
       rest = rest.from(count);
     }
     return closeWith(integral, lists, window, reference_ns);
   }
 
-  Closed surprised(const ExposureInterval& window, std::int64_t reference_ns) const {
+  Closed integratedFromLog(const ExposureInterval& window, std::int64_t reference_ns) const {
     Lists lists(kPathSize, {});
     lists.append(wireView(wire_));
-    return surprise(lists, kUnequal, GetParam(), window, reference_ns);
+    return integrated(lists, kUnequal, GetParam(), window, reference_ns);
   }
 
   std::vector<std::uint8_t> wire_;
@@ -380,14 +380,14 @@ TEST_P(DoubleIntegralPaths, AgreeWhenThePredictionIsExact) {
   for (const ExposureInstant instant :
        {ExposureInstant::kStart, ExposureInstant::kMid, ExposureInstant::kEnd}) {
     const std::int64_t reference_ns = kWindow.at(instant);
-    const Closed expected = surprised(kWindow, reference_ns);
-    EXPECT_EQ(expected.report.kind, CloseKind::kSurprise);
+    const Closed expected = integratedFromLog(kWindow, reference_ns);
+    EXPECT_EQ(expected.report.kind, IntegrationKind::kNotPredicted);
     EXPECT_EQ(expected.report.walked, expected.report.events);
     for (const std::size_t packet :
          {std::size_t{1}, std::size_t{7}, std::size_t{1000}, std::size_t{70'000}, kEvents}) {
-      const Closed closed = followed(kWindow, reference_ns, kWindow, reference_ns, packet);
+      const Closed closed = accumulated(kWindow, reference_ns, kWindow, reference_ns, packet);
       EXPECT_EQ(closed.gain, expected.gain);
-      EXPECT_EQ(closed.report.kind, CloseKind::kFollowed);
+      EXPECT_EQ(closed.report.kind, IntegrationKind::kPredicted);
       EXPECT_EQ(closed.report.events, expected.report.events);
       EXPECT_LT(closed.report.walked, closed.report.events / 10);
     }
@@ -396,7 +396,7 @@ TEST_P(DoubleIntegralPaths, AgreeWhenThePredictionIsExact) {
 
 TEST_P(DoubleIntegralPaths, AgreeWhenThePredictionIsOffByMicroseconds) {
   std::mt19937 random(8);
-  int followed_count = 0;
+  int predicted_count = 0;
   constexpr int kTries = 60;
   for (int i = 0; i < kTries; ++i) {
     const auto offset = [&] {
@@ -404,47 +404,47 @@ TEST_P(DoubleIntegralPaths, AgreeWhenThePredictionIsOffByMicroseconds) {
     };
     const ExposureInterval expected{kWindow.start_ns + offset(), kWindow.end_ns + offset()};
     const std::int64_t reference_ns = kWindow.at(ExposureInstant::kMid);
-    const Closed closed = followed(expected, reference_ns + offset(), kWindow, reference_ns);
-    ASSERT_EQ(closed.gain, surprised(kWindow, reference_ns).gain)
+    const Closed closed = accumulated(expected, reference_ns + offset(), kWindow, reference_ns);
+    ASSERT_EQ(closed.gain, integratedFromLog(kWindow, reference_ns).gain)
         << "expected start off by " << expected.start_ns - kWindow.start_ns << " ns, end by "
         << expected.end_ns - kWindow.end_ns << " ns";
-    followed_count += closed.report.kind == CloseKind::kFollowed ? 1 : 0;
+    predicted_count += closed.report.kind == IntegrationKind::kPredicted ? 1 : 0;
   }
-  EXPECT_GT(followed_count, kTries * 8 / 10);
+  EXPECT_GT(predicted_count, kTries * 8 / 10);
 }
 
 TEST_P(DoubleIntegralPaths, AgreeWhereverTheWindowStarts) {
   // Steps that come by every place relative to the quantum of base instants.
   constexpr std::int64_t kQuantum = 1 << 19;
-  int surprises = 0;
+  int not_predicted = 0;
   int tries = 0;
   for (std::int64_t step_ns = 0; step_ns < kQuantum; step_ns += 9'973) {
     const ExposureInterval window{kWindow.start_ns + step_ns, kWindow.end_ns + step_ns};
     const std::int64_t reference_ns = window.at(ExposureInstant::kMid);
-    const std::vector<float> expected = surprised(window, reference_ns).gain;
+    const std::vector<float> expected = integratedFromLog(window, reference_ns).gain;
     for (const std::int64_t off_ns : {-30 * kMicrosecond, kMicrosecond}) {
-      const Closed closed = followed({window.start_ns + off_ns, window.end_ns + off_ns},
-                                     reference_ns + off_ns, window, reference_ns, 20'000);
+      const Closed closed = accumulated({window.start_ns + off_ns, window.end_ns + off_ns},
+                                        reference_ns + off_ns, window, reference_ns, 20'000);
       ASSERT_EQ(closed.gain, expected) << "step " << step_ns << " off " << off_ns;
-      surprises += closed.report.kind == CloseKind::kSurprise ? 1 : 0;
+      not_predicted += closed.report.kind == IntegrationKind::kNotPredicted ? 1 : 0;
       ++tries;
     }
   }
   // Straddling a quantum is rare, but must have come up for the comparison to mean something.
-  EXPECT_GT(surprises, 0);
-  EXPECT_LT(surprises, tries / 10);
+  EXPECT_GT(not_predicted, 0);
+  EXPECT_LT(not_predicted, tries / 10);
 }
 
 TEST_P(DoubleIntegralPaths, AgreeWhenThePredictionIsWrong) {
   const std::int64_t reference_ns = kWindow.at(ExposureInstant::kMid);
-  const std::vector<float> expected = surprised(kWindow, reference_ns).gain;
+  const std::vector<float> expected = integratedFromLog(kWindow, reference_ns).gain;
   for (const std::int64_t start_off : {-4, 0, 3, 40, 400}) {
     for (const std::int64_t end_off : {-6, 0, 4, 500}) {
       for (const std::int64_t reference_off : {-20, -3, 0, 8}) {
         const ExposureInterval guess{kWindow.start_ns + start_off * kMillisecond,
                                      kWindow.end_ns + end_off * kMillisecond};
-        const Closed closed = followed(guess, reference_ns + reference_off * kMillisecond, kWindow,
-                                       reference_ns, 5000);
+        const Closed closed = accumulated(guess, reference_ns + reference_off * kMillisecond,
+                                          kWindow, reference_ns, 5000);
         ASSERT_EQ(closed.gain, expected) << start_off << " " << end_off << " " << reference_off;
       }
     }
@@ -456,12 +456,12 @@ TEST_P(DoubleIntegralPaths, AgreeForLatentImagesOfOneExposure) {
   Lists lists(kPathSize, {});
   lists.append(wireView(wire_));
   DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
-  integral.expect(kWindow, kWindow.at(ExposureInstant::kMid));
-  integral.follow(lists);
+  integral.predictWindow(kWindow, kWindow.at(ExposureInstant::kMid));
+  integral.accumulate(lists);
   for (int i = 0; i <= 10; ++i) {
     const std::int64_t reference_ns = kWindow.start_ns + kWindow.length() * i / 10;
     ASSERT_EQ(closeWith(integral, lists, kWindow, reference_ns).gain,
-              surprised(kWindow, reference_ns).gain);
+              integratedFromLog(kWindow, reference_ns).gain);
   }
 }
 
@@ -469,38 +469,38 @@ TEST_P(DoubleIntegralPaths, AgreeAfterAFlush) {
   Lists lists(kPathSize, {});
   DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
   const std::int64_t reference_ns = kWindow.at(ExposureInstant::kMid);
-  integral.expect(kWindow, reference_ns);
+  integral.predictWindow(kWindow, reference_ns);
   lists.append(WireEvents{wire_.data(), kEvents / 2});
-  integral.follow(lists);
+  integral.accumulate(lists);
 
   lists.flush();
-  integral.forget();
-  integral.expect(kWindow, reference_ns);
+  integral.reset();
+  integral.predictWindow(kWindow, reference_ns);
   lists.append(wireView(wire_));
-  integral.follow(lists);
+  integral.accumulate(lists);
   const Closed closed = closeWith(integral, lists, kWindow, reference_ns);
-  EXPECT_EQ(closed.report.kind, CloseKind::kFollowed);
-  EXPECT_EQ(closed.gain, surprised(kWindow, reference_ns).gain);
+  EXPECT_EQ(closed.report.kind, IntegrationKind::kPredicted);
+  EXPECT_EQ(closed.gain, integratedFromLog(kWindow, reference_ns).gain);
 }
 
 TEST_P(DoubleIntegralPaths, AgreeAfterAnOverflow) {
-  // Full long before the window ends: what is left is what counts, however it was followed.
+  // Full long before the window ends: what is left is what counts, however it was accumulated.
   PixelEventLists::Limits limits;
   limits.max_events = 80'000;
   Lists lists(kPathSize, limits);
   DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
   const std::int64_t reference_ns = kWindow.at(ExposureInstant::kMid);
-  integral.expect(kWindow, reference_ns);
+  integral.predictWindow(kWindow, reference_ns);
   for (WireEvents rest = wireView(wire_); !rest.empty();) {
     const std::size_t count = std::min<std::size_t>(1500, rest.count);
     lists.append(WireEvents{rest.data, count});
-    integral.follow(lists);
+    integral.accumulate(lists);
     rest = rest.from(count);
   }
   ASSERT_GT(lists.overflowed(), 0u);
   ASSERT_GT(lists.completeFrom(), kWindow.start_ns);
   EXPECT_EQ(closeWith(integral, lists, kWindow, reference_ns).gain,
-            surprise(lists, kUnequal, GetParam(), kWindow, reference_ns).gain);
+            integrated(lists, kUnequal, GetParam(), kWindow, reference_ns).gain);
 }
 
 TEST_P(DoubleIntegralPaths, AgreeAfterOverflowBetweenFollows) {
@@ -509,14 +509,14 @@ TEST_P(DoubleIntegralPaths, AgreeAfterOverflowBetweenFollows) {
   Lists lists(kPathSize, limits);
   DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
   const std::int64_t reference_ns = kWindow.at(ExposureInstant::kMid);
-  integral.expect(kWindow, reference_ns);
+  integral.predictWindow(kWindow, reference_ns);
   const WireEvents all = wireView(wire_);
   lists.append(WireEvents{all.data, 40'000});
-  integral.follow(lists);
+  integral.accumulate(lists);
   lists.append(all.from(40'000));
-  integral.follow(lists);
+  integral.accumulate(lists);
   EXPECT_EQ(closeWith(integral, lists, kWindow, reference_ns).gain,
-            surprise(lists, kUnequal, GetParam(), kWindow, reference_ns).gain);
+            integrated(lists, kUnequal, GetParam(), kWindow, reference_ns).gain);
 }
 
 TEST_P(DoubleIntegralPaths, AgreeOverARunOfFrames) {
@@ -530,7 +530,7 @@ TEST_P(DoubleIntegralPaths, AgreeOverARunOfFrames) {
   Lists lists(kPathSize, {});
   DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
   WireEvents rest = wireView(wire_);
-  int followed_count = 0;
+  int predicted_count = 0;
   ExposureInterval last{};
   for (std::int64_t at_ns = kStart + kMillisecond; at_ns < kStart + 34 * kMillisecond;
        at_ns += kPeriod) {
@@ -539,19 +539,19 @@ TEST_P(DoubleIntegralPaths, AgreeOverARunOfFrames) {
     while (!rest.empty() && (!lists.hasNewest() || lists.newest() < window.end_ns)) {
       const std::size_t count = std::min<std::size_t>(777, rest.count);
       lists.append(WireEvents{rest.data, count});
-      integral.follow(lists);
+      integral.accumulate(lists);
       rest = rest.from(count);
     }
     const std::int64_t reference_ns = window.at(ExposureInstant::kMid);
     const Closed closed = closeWith(integral, lists, window, reference_ns);
-    ASSERT_EQ(closed.gain, surprise(all, kUnequal, GetParam(), window, reference_ns).gain);
-    followed_count += closed.report.kind == CloseKind::kFollowed ? 1 : 0;
+    ASSERT_EQ(closed.gain, integrated(all, kUnequal, GetParam(), window, reference_ns).gain);
+    predicted_count += closed.report.kind == IntegrationKind::kPredicted ? 1 : 0;
     last = window;
     const ExposureInterval next{last.start_ns + kPeriod, last.end_ns + kPeriod};
-    integral.expect(next, next.at(ExposureInstant::kMid));
+    integral.predictWindow(next, next.at(ExposureInstant::kMid));
     lists.discardBefore(last.end_ns);
   }
-  EXPECT_GE(followed_count, 4);
+  EXPECT_GE(predicted_count, 4);
 }
 
 TEST_P(DoubleIntegralPaths, AgreeUnderRandomSchedules) {
@@ -586,20 +586,21 @@ TEST_P(DoubleIntegralPaths, AgreeUnderRandomSchedules) {
         }
         case 1:
           expected = randomWindow();
-          integral.expect(expected, expected.start_ns + below(expected.length() + 1));
+          integral.predictWindow(expected, expected.start_ns + below(expected.length() + 1));
           break;
         case 2:
-          integral.follow(lists);
+          integral.accumulate(lists);
           break;
         case 3:
-          if (below(10) == 0) integral.forget();
+          if (below(10) == 0) integral.reset();
           break;
         default: {
           const bool as_expected = below(2) == 0;
           const ExposureInterval window = as_expected ? expected : randomWindow();
           const std::int64_t reference_ns = window.start_ns + below(window.length() + 1);
           const Closed closed = closeWith(integral, lists, window, reference_ns);
-          ASSERT_EQ(closed.gain, surprise(lists, kUnequal, GetParam(), window, reference_ns).gain);
+          ASSERT_EQ(closed.gain,
+                    integrated(lists, kUnequal, GetParam(), window, reference_ns).gain);
           const std::vector<Event> so_far(
               events.begin(),
               events.begin() + static_cast<std::ptrdiff_t>(events.size() - rest.count));
@@ -630,11 +631,11 @@ TEST_P(DoubleIntegralPaths, AllocateNothing) {
   const std::uint64_t before = allocationCount();
   ASSERT_GT(before, 0u);
   for (int i = 0; i < 4; ++i) {
-    integral.expect(kWindow, kWindow.start_ns);
-    integral.follow(lists);
-    integral.close(lists, kWindow, kWindow.start_ns, gain.data());
-    integral.close(lists, kWindow, kWindow.end_ns, gain.data());
-    integral.forget();
+    integral.predictWindow(kWindow, kWindow.start_ns);
+    integral.accumulate(lists);
+    integral.integrate(lists, kWindow, kWindow.start_ns, gain.data());
+    integral.integrate(lists, kWindow, kWindow.end_ns, gain.data());
+    integral.reset();
   }
   EXPECT_EQ(allocationCount(), before);
 }

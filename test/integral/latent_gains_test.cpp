@@ -38,7 +38,7 @@ class LatentGainsTest : public ::testing::TestWithParam<Model> {
   std::vector<float> integrated(std::int64_t reference_ns) {
     DoubleIntegral integral(kSize, kThresholds, GetParam().weighting, GetParam().level);
     std::vector<float> gain(kSize.pixelCount());
-    EXPECT_EQ(integral.close(lists_, kExposure, reference_ns, gain.data()).out_of_range, 0u);
+    EXPECT_EQ(integral.integrate(lists_, kExposure, reference_ns, gain.data()).out_of_range, 0u);
     return gain;
   }
 

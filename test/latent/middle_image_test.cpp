@@ -62,12 +62,12 @@ TEST(MiddleImage, IsTheFrameThatWouldBePublishedWithThatReference) {
     std::vector<float> gain(kSize.pixelCount());
     const LevelModel level = DeblurParameters{}.level;
     DoubleIntegral integral(kSize, kThresholds, Weighting::kTime, level);
-    integral.close(lists, kExposure, kExposure.at(reference), gain.data());
+    integral.integrate(lists, kExposure, kExposure.at(reference), gain.data());
     LatentImage latent_image(FilterParameters{});
     MiddleImage middle(latent_image);
     middle.take(gain, lists, {kExposure.at(reference), kExposure.end_ns}, {kThresholds, level});
     EventCounts counts(kSize);
-    counts.close(lists, kExposure);
+    counts.count(lists, kExposure);
     const std::vector<std::uint8_t> shown = pixelsOf(middle.show(
         view, {counts.data(), kThresholds}, lists,
         {kExposure.at(ExposureInstant::kMid), kExposure.end_ns}, CameraResponse::linear()));

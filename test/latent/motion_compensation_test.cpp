@@ -93,9 +93,9 @@ Image compensated(const Image& reference, Image image) {
 TEST(MotionCompensation, TakesOutNoiseThatTheReferenceDoesNotHave) {
   const std::vector<float> truth = wavePlane(kShift_px, 0.0, 0);
   const Image noisy = imageOf(wavePlane(kShift_px, 6.0, 1));
-  const Image steadied = compensated(imageOf(wavePlane(0.0, 0.0, 0)), noisy);
+  const Image stabilised = compensated(imageOf(wavePlane(0.0, 0.0, 0)), noisy);
   EXPECT_GT(error(noisy.plane(), truth), 5.5);
-  EXPECT_LT(error(steadied.plane(), truth), 1.5);
+  EXPECT_LT(error(stabilised.plane(), truth), 1.5);
 }
 
 TEST(MotionCompensation, LeavesAnImageThatEqualsTheReference) {
@@ -112,10 +112,10 @@ TEST(MotionCompensation, LeavesWhatDiffersByMoreThanNoise) {
     }
   }
   const Image image = imageOf(plane);
-  const Image steadied = compensated(imageOf(wavePlane(0.0, 0.0, 0)), image);
+  const Image stabilised = compensated(imageOf(wavePlane(0.0, 0.0, 0)), image);
   for (int y = 34; y < 42; ++y) {
     for (int x = 44; x < 52; ++x) {
-      ASSERT_NEAR(steadied.plane()[indexOf(x, y)], 255.0F, 1.0F);
+      ASSERT_NEAR(stabilised.plane()[indexOf(x, y)], 255.0F, 1.0F);
     }
   }
 }

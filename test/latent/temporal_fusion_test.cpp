@@ -24,7 +24,7 @@ constexpr std::int64_t kExposure_ns = 10 * kMs;
 class TemporalFusionTest : public ::testing::Test {
  protected:
   TemporalFusionTest()
-      : stream_(PixelEventLists::Limits{}, counters_, [](StreamBreak, std::int64_t) {}) {
+      : stream_(PixelEventLists::Limits{}, counters_, [](StreamReset, std::int64_t) {}) {
     event(0, 0, 0, true);
   }
 
@@ -105,7 +105,7 @@ TEST_F(TemporalFusionTest, GoesNoFurtherThanEventsDo) {
 TEST_F(TemporalFusionTest, BeginsAnew) {
   event(100, 0, 0, true);
   show(10, 100);
-  fusion_.forget();
+  fusion_.reset();
   EXPECT_EQ(at(show(20, 200), 1, 1), 200);
   EXPECT_EQ(at(show(30, 100, kExposure_ns, 1), 1, 1), 100) << "another epoch of the frames' clock";
   EXPECT_EQ(at(show(30, 200, kExposure_ns, 1), 1, 1), 200) << "the same instant again";

@@ -24,9 +24,9 @@
 #include "fast_edi/messages/steady_time.hpp"
 #include "node/deblur_node.hpp"
 #include "rostest/child_process.hpp"
-#include "rostest/made_up_camera.hpp"
 #include "rostest/node_client.hpp"
 #include "rostest/ros_process.hpp"
+#include "rostest/stub_camera.hpp"
 
 namespace fast_edi {
 namespace {
@@ -187,7 +187,7 @@ TEST_P(DeblurNodeThreads, WorksWhileEverybodyComesAndGoes) {
 
   test::RecordingSettings settings;
   settings.frames = 5;
-  const test::MadeUpCamera camera(kNamespace, settings, kHaste);
+  const test::StubCamera camera(kNamespace, settings, kHaste);
   const Reconfigurer reconfigurer;
   const test::ChildProcess tuner({"/usr/bin/python3", "-c", kTuner});
   const PassingConsumer first("deblurred/image_raw", 10);

@@ -20,7 +20,7 @@ TEST(LatencyRecord, TakesTheNearestRank) {
   EXPECT_EQ(record.percentile(0.001), 1);
 }
 
-TEST(LatencyRecord, ForgetsTheOldest) {
+TEST(LatencyRecord, DiscardsTheOldest) {
   LatencyRecord record;
   for (std::size_t i = 0; i < LatencyRecord::kCapacity; ++i) {
     record.add(1'000'000);
@@ -29,8 +29,6 @@ TEST(LatencyRecord, ForgetsTheOldest) {
     record.add(7);
   }
   EXPECT_EQ(record.percentile(1.0), 7);
-  record.clear();
-  EXPECT_TRUE(record.empty());
 }
 
 }  // namespace

@@ -200,7 +200,7 @@ class InvariantChecker {
     ASSERT_EQ(c.frames_in, c.frames_deblurred + c.framesPassed() + c.frames_suppressed +
                                c.frames_abandoned + status.waiting_frames);
     ASSERT_EQ(c.frames_deblurred + c.framesPassed(), sink_.outputs.size());
-    ASSERT_EQ(c.closes_followed + c.closes_surprise, c.frames_deblurred);
+    ASSERT_EQ(c.windows_predicted + c.windows_not_predicted, c.frames_deblurred);
     ASSERT_LE(c.frames_still, c.frames_deblurred);
     ASSERT_TRUE(sink_.isBalanced());
     ASSERT_LE(status.buffered_events, max_events_);

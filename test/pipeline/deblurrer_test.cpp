@@ -880,8 +880,8 @@ TEST_F(DeblurrerTest, PeriodicExposuresAreFollowedWhileTheirEventsCome) {
     }
   }
   EXPECT_EQ(counters().frames_deblurred, 24u);
-  EXPECT_LE(counters().closes_surprise, 2u);
-  EXPECT_EQ(counters().closes_followed + counters().closes_surprise, 24u);
+  EXPECT_LE(counters().windows_not_predicted, 2u);
+  EXPECT_EQ(counters().windows_predicted + counters().windows_not_predicted, 24u);
   for (std::size_t i = 0; i < outputs().size(); ++i) {
     expectDeblurred(i);
   }

@@ -38,7 +38,7 @@ class FrameQueueTest : public ::testing::Test {
 
   DeblurParameters parameters;
   DeblurCounters counters;
-  EventStream events{{}, counters, [](StreamBreak, std::int64_t) {}};
+  EventStream events{{}, counters, [](StreamReset, std::int64_t) {}};
   FrameQueue queue{parameters, events, counters};
 };
 

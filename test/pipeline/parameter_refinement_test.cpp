@@ -31,7 +31,7 @@ void learnFromFrames(ParameterRefinement& refinement, DeblurCounters& counters) 
   settings.timing.frames = 9;
   settings.seed = 3;
   const SimulatedSequence sequence = simulateSequence(settings);
-  EventStream events({}, counters, [](StreamBreak, std::int64_t) {});
+  EventStream events({}, counters, [](StreamReset, std::int64_t) {});
   events.take(testing::wireView(testing::toWire(sequence.events)), kSize, {});
   WindowIntegral integral;
   for (const SimulatedFrame& frame : sequence.frames) {

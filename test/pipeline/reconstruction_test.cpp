@@ -42,7 +42,7 @@ class ReconstructionTest : public ::testing::Test {
 
   DeblurParameters parameters;
   DeblurCounters counters;
-  EventStream events{{}, counters, [](StreamBreak, std::int64_t) {}};
+  EventStream events{{}, counters, [](StreamReset, std::int64_t) {}};
   WindowIntegral integral;
   testing::RecordingSink sink;
   Reconstruction reconstruction{sink, parameters.filter};

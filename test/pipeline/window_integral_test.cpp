@@ -37,7 +37,7 @@ class WindowIntegralTest : public ::testing::Test {
 
   DeblurParameters parameters;
   DeblurCounters counters;
-  EventStream events{{}, counters, [](StreamBreak, std::int64_t) {}};
+  EventStream events{{}, counters, [](StreamReset, std::int64_t) {}};
   WindowIntegral integral;
   std::vector<Event> list;
 };
@@ -54,13 +54,14 @@ TEST_F(WindowIntegralTest, TakesNoMemoryBeforeItMay) {
 TEST_F(WindowIntegralTest, GivesTheGainsOfTheReferencePredictedOrNot) {
   take(kSize, 1);
   ASSERT_TRUE(integral.prepare(events, parameters, true));
-  EXPECT_EQ(integral.integrate(*events.lists(), kWindow, kMid, false).kind, CloseKind::kSurprise);
+  EXPECT_EQ(integral.integrate(*events.lists(), kWindow, kMid, false).kind,
+            IntegrationKind::kNotPredicted);
   expectReference(kSize);
   const std::vector<float> gains = integral.gains();
   integral.predictWindow(kWindow, kMid);
   integral.accumulate(*events.lists(), true);
-  const CloseReport report = integral.integrate(*events.lists(), kWindow, kMid, true);
-  EXPECT_EQ(report.kind, CloseKind::kFollowed);
+  const IntegrationReport report = integral.integrate(*events.lists(), kWindow, kMid, true);
+  EXPECT_EQ(report.kind, IntegrationKind::kPredicted);
   EXPECT_EQ(integral.gains(), gains);
   std::uint64_t counted = 0;
   for (std::size_t i = 0; i < kSize.pixelCount(); ++i) {
@@ -75,7 +76,8 @@ TEST_F(WindowIntegralTest, APredictionNearTheOneBeforeKeepsTheRunningSums) {
   integral.predictWindow(kWindow, kMid);
   integral.accumulate(*events.lists(), false);
   integral.predictWindow({kWindow.start_ns + 1000, kWindow.end_ns + 1000}, kMid + 1000);
-  EXPECT_EQ(integral.integrate(*events.lists(), kWindow, kMid, false).kind, CloseKind::kFollowed);
+  EXPECT_EQ(integral.integrate(*events.lists(), kWindow, kMid, false).kind,
+            IntegrationKind::kPredicted);
 }
 
 TEST_F(WindowIntegralTest, FollowsTheListsThroughAChangeOfSize) {

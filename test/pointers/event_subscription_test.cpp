@@ -146,7 +146,7 @@ class EventPointersThreads : public ::testing::TestWithParam<std::uint32_t> {
 TEST_P(EventPointersThreads, ComeWholeWhileSubscriptionsComeAndGo) {
   constexpr int kSubscriptions = 20;
   constexpr std::size_t kEvents = 20'000;
-  constexpr std::size_t kPatience = 3;
+  constexpr std::size_t kMaxUselessPairs = 3;
   ros::CallbackQueue queue;
   ros::NodeHandle nh;
   nh.setCallbackQueue(&queue);
@@ -182,7 +182,7 @@ TEST_P(EventPointersThreads, ComeWholeWhileSubscriptionsComeAndGo) {
         },
         [](std::size_t) {}, [] {});
     subscription.update();
-    EXPECT_TRUE(test::waitUntil([&] { return arrays >= kPatience; }));
+    EXPECT_TRUE(test::waitUntil([&] { return arrays >= kMaxUselessPairs; }));
     // It ends with a delivery at work or about to be.
   }
   stop = true;

@@ -1,13 +1,13 @@
 // Node and nodelet as their users see them: the same tests for both, see deblur.test.
 //
 // These instances run in namespaces of their own:
-//   /patient   close_timeout_ms 20000: what is deblurred depends on no timing
+//   /long_timeout   close_timeout_ms 20000: what is deblurred depends on no timing
 //   /quick     close_timeout_ms 100: what happens without events or exposures
 //   /fallback  as /quick, with exposure_time_us
 //   /unexposed as /quick
 //   /biased    thresholds from biases
 //   /crowded   max_buffered_events 1000
-//   /filmed    as /patient, with latent_images 4
+//   /filmed    as /long_timeout, with latent_images 4
 
 #include <algorithm>
 #include <condition_variable>
@@ -24,9 +24,9 @@
 
 #include "rostest/child_process.hpp"
 #include "rostest/expectations.hpp"
-#include "rostest/made_up_camera.hpp"
 #include "rostest/node_client.hpp"
 #include "rostest/recording.hpp"
+#include "rostest/stub_camera.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace fast_edi {
@@ -130,7 +130,7 @@ class Live : public ::testing::Test {
 int Live::epoch_ = 0;
 
 TEST_F(Live, DeblursWhatAnotherProcessPublishes) {
-  connectTo("/patient");
+  connectTo("/long_timeout");
   RecordingSettings settings = laterSettings();
   settings.size = {346, 260};
   settings.frames = 20;
@@ -142,7 +142,7 @@ TEST_F(Live, TakesABreakFromEventsThatAreTooMany) {
   RecordingSettings settings = laterSettings();
   settings.event_period_ns = 5 * kNanosecondsPerMicrosecond;  // an array holds several thousand
   {
-    const MadeUpCamera camera("/crowded", settings, 1);
+    const StubCamera camera("/crowded", settings, 1);
     const auto suspended = [this](int times) {
       return client_->waitForReport([times](const DiagnosticStatus& status) {
         return valueOf(status, "Event suspensions") == std::to_string(times);
@@ -164,7 +164,7 @@ TEST_F(Live, TakesABreakFromEventsThatAreTooMany) {
 }
 
 TEST_F(Live, KeepsEveryEncoding) {
-  connectTo("/patient");
+  connectTo("/long_timeout");
   for (const char* encoding : {"8UC1", "mono16", "bayer_rggb8", "rgb8", "bgr8"}) {
     ASSERT_TRUE(client_->stopListening());
     ASSERT_TRUE(client_->listen());
@@ -177,7 +177,7 @@ TEST_F(Live, KeepsEveryEncoding) {
 }
 
 TEST_F(Live, NamesTheFrameOfImagesThatHaveNone) {
-  connectTo("/patient");
+  connectTo("/long_timeout");
   RecordingSettings settings = laterSettings();
   settings.frame_id = "";
   settings.frames = 2;
@@ -185,11 +185,11 @@ TEST_F(Live, NamesTheFrameOfImagesThatHaveNone) {
 }
 
 TEST_F(Live, DeblursABagPlayedAtRealSpeed) {
-  connectTo("/patient");
+  connectTo("/long_timeout");
   const Recording recording = makeRecording(laterSettings());
   const TemporaryDirectory directory;
   const std::string path = directory.file("played.bag");
-  writeBag(recording, "/patient", path);
+  writeBag(recording, "/long_timeout", path);
   ChildProcess player({"rosbag", "play", "--quiet", "--wait-for-subscribers", path});
   EXPECT_EQ(player.wait(), 0);
   const std::vector<Output> outputs = client_->waitForOutputs(imagesOf(recording).size());
@@ -198,13 +198,13 @@ TEST_F(Live, DeblursABagPlayedAtRealSpeed) {
 }
 
 TEST_F(Live, StartsAnewWhenABagIsPlayedInALoop) {
-  connectTo("/patient");
+  connectTo("/long_timeout");
   RecordingSettings settings = laterSettings();
   settings.frames = 20;  // longer than max_backward_jump_ms
   const Recording recording = makeRecording(settings);
   const TemporaryDirectory directory;
   const std::string path = directory.file("looped.bag");
-  writeBag(recording, "/patient", path);
+  writeBag(recording, "/long_timeout", path);
   const std::size_t frames = imagesOf(recording).size();
   std::vector<Output> outputs;
   {
@@ -220,7 +220,7 @@ TEST_F(Live, StartsAnewWhenABagIsPlayedInALoop) {
 }
 
 TEST_F(Live, WaitsForTheEventsOfAFrame) {
-  connectTo("/patient");
+  connectTo("/long_timeout");
   RecordingSettings settings = laterSettings();
   settings.frames = 1;
   const Recording recording = makeRecording(settings);
@@ -335,7 +335,7 @@ TEST_F(Live, PassesUnsupportedEncodingsThrough) {
 }
 
 TEST_F(Live, RefusesMalformedImages) {
-  connectTo("/patient");
+  connectTo("/long_timeout");
   RecordingSettings settings = laterSettings();
   settings.frames = 3;
   const Recording recording = makeRecording(settings);
@@ -343,14 +343,14 @@ TEST_F(Live, RefusesMalformedImages) {
   lying->height = 1'000'000;
   client_->publish(lying);
   EXPECT_TRUE(client_->waitForReport([](const DiagnosticStatus& status) {
-    return contains(status.message, "/patient/image_raw refused") &&
+    return contains(status.message, "/long_timeout/image_raw refused") &&
            contains(status.message, "bytes of data, expected at least");
   })) << client_->report().message;
   expectDeblurred(recording, testParameters());
 }
 
 TEST_F(Live, SurvivesEventArraysThatLieAboutTheirLength) {
-  connectTo("/patient");
+  connectTo("/long_timeout");
   RecordingSettings settings = laterSettings();
   settings.frames = 3;
   const Recording recording = makeRecording(settings);
@@ -363,7 +363,7 @@ TEST_F(Live, SurvivesEventArraysThatLieAboutTheirLength) {
 }
 
 TEST_F(Live, SurvivesAChangeOfSize) {
-  connectTo("/patient");
+  connectTo("/long_timeout");
   RecordingSettings settings = laterSettings();
   settings.frames = 3;
   const Recording small = makeRecording(settings);
@@ -424,7 +424,7 @@ TEST_F(Live, ShowsSilence) {
 }
 
 TEST_F(Live, DrawsAComparisonForWhoeverSubscribes) {
-  connectTo("/patient");
+  connectTo("/long_timeout");
   std::mutex mutex;
   std::condition_variable changed;
   sensor_msgs::ImageConstPtr picture;
@@ -434,7 +434,7 @@ TEST_F(Live, DrawsAComparisonForWhoeverSubscribes) {
         picture = image;
         changed.notify_all();
       });
-  ASSERT_TRUE(waitUntil([] { return publisherSendsToUs("/patient/comparison"); }));
+  ASSERT_TRUE(waitUntil([] { return publisherSendsToUs("/long_timeout/comparison"); }));
   RecordingSettings settings = laterSettings();
   settings.frames = 3;
   client_->play(makeRecording(settings));

@@ -38,7 +38,7 @@ struct InputTopics {
 
 class NodeClient {
  public:
-  /// \param ns namespace of the node's topics, e.g. "/patient"
+  /// \param ns namespace of the node's topics, e.g. "/long_timeout"
   /// \param node name of the node, whose diagnostics are collected
   /// \param output namespace of its output within \p ns
   NodeClient(const std::string& ns, const std::string& node,

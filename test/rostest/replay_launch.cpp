@@ -54,8 +54,8 @@ TEST_P(ReplayLaunch, RecordsOneOutputForEachFrame) {
   writeBag(recording, "/dvs", in);
   ChildProcess launch(
       {"roslaunch", "-p", freePort(), std::string(FAST_EDI_SOURCE_DIR "/launch/") + GetParam().file,
-       "bag:=" + in, "record:=" + out, "config:=" FAST_EDI_SOURCE_DIR "/test/rostest/patient.yaml",
-       GetParam().argument});
+       "bag:=" + in, "record:=" + out,
+       "config:=" FAST_EDI_SOURCE_DIR "/test/rostest/long_timeout.yaml", GetParam().argument});
   ASSERT_EQ(launch.wait(), 0);
   const std::vector<Output> outputs = readOutputs(out);
   expectOneOutputForEachFrame(recording, outputs);

@@ -155,7 +155,7 @@ TEST_F(VinsMonoInput, IsUsableWhateverHappens) {
   EXPECT_GE(passed, 5U) << "too little trouble";
   EXPECT_GE(outputs.size() - passed, 20U) << "too little deblurred";
 
-  // The clock jumps back: VINS-Mono starts anew, once, and then finds the same rules kept.
+  // The clock jumps back: VINS-Mono restarts, once, and then finds the same rules kept.
   play(path);
   const std::vector<Output> both = client_.waitForOutputs(2 * expected);
   ASSERT_EQ(both.size(), 2 * expected);

@@ -75,11 +75,11 @@ TEST_P(VinsMonoLaunch, FeedsEveryFrameToTheTracker) {
   settings.first_exposure_ns = kNanosecondsPerSecond;  // until then everybody has heard the clock
   const Recording recording = makeRecording(settings);
   writeBagWithImu(recording, in);
-  ChildProcess launch({"roslaunch", "-p", freePort(),
-                       FAST_EDI_SOURCE_DIR "/launch/vins_mono.launch", "bag:=" + in,
-                       "record:=" + out, "camera:=" + GetParam().camera,
-                       std::string("deblur:=") + (GetParam().deblur ? "true" : "false"),
-                       "config:=" FAST_EDI_SOURCE_DIR "/test/rostest/patient.yaml", "settle:=1.0"});
+  ChildProcess launch(
+      {"roslaunch", "-p", freePort(), FAST_EDI_SOURCE_DIR "/launch/vins_mono.launch", "bag:=" + in,
+       "record:=" + out, "camera:=" + GetParam().camera,
+       std::string("deblur:=") + (GetParam().deblur ? "true" : "false"),
+       "config:=" FAST_EDI_SOURCE_DIR "/test/rostest/long_timeout.yaml", "settle:=1.0"});
   ASSERT_EQ(launch.wait(), 0);
 
   std::vector<sensor_msgs::ImageConstPtr> expected = imagesOf(recording);

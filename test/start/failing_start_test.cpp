@@ -13,8 +13,8 @@
 
 #include "node/deblur_node.hpp"
 #include "node/reconfigure_server.hpp"
-#include "rostest/made_up_camera.hpp"
 #include "rostest/ros_process.hpp"
+#include "rostest/stub_camera.hpp"
 
 namespace fast_edi {
 
@@ -42,7 +42,7 @@ TEST(FailingStart, LeavesNothingThatCallsBack) {
   ros::param::set(kNode + "/lazy", false);
   test::RecordingSettings settings;
   settings.frames = 5;
-  const test::MadeUpCamera camera(kNamespace, settings, 10);
+  const test::StubCamera camera(kNamespace, settings, 10);
   ros::CallbackQueue queue;
   ros::NodeHandle nh(kNamespace);
   ros::NodeHandle private_nh(kNode);

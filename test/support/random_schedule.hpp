@@ -57,7 +57,7 @@ Schedule undisturbedSchedule(Random& random, const CameraRun& run);
 
 /// Up to four runs of a camera whose clock is anywhere in each of them, with messages that are
 /// delayed, dropped, repeated, shuffled and odd: stray events and frames of any time, other sensor
-/// sizes, exposures of impossible length, sequence numbers that start anew.
+/// sizes, exposures of impossible length, sequence numbers that restart.
 Schedule disturbedSchedule(Random& random, SensorSize size, PixelFormat format);
 
 /// The frame of a message of that kind; owns its pixels.

@@ -143,7 +143,7 @@ std::string ScheduleChecker::countFault() const {
   if (c.frames_suppressed + c.frames_abandoned < gone_) {
     return "frames without output that are not counted";
   }
-  if (c.closes_followed + c.closes_surprise != c.frames_deblurred ||
+  if (c.windows_predicted + c.windows_not_predicted != c.frames_deblurred ||
       c.frames_still > c.frames_deblurred) {
     return "counts of closed frames do not add up";
   }

@@ -86,15 +86,15 @@ TEST_F(PairConsistencySimulation, ShiftsBeyondTheEventsAreNotMeasured) {
 }
 
 TEST_F(PairConsistencySimulation, PixelsThatTellNothingAreLeftOut) {
-  markTelling(sample_, {sample_.first.stamp_ns, sample_.second.stamp_ns});
+  markInformative(sample_, {sample_.first.stamp_ns, sample_.second.stamp_ns});
   std::size_t telling = 0;
-  for (const std::uint8_t tells : sample_.telling) {
+  for (const std::uint8_t tells : sample_.informative) {
     telling += tells;
   }
   EXPECT_GT(telling, 500U);
   EXPECT_LT(telling, size_.pixelCount() * 3 / 4);
   const double correlation = at(0.0).correlation;
-  sample_.telling.assign(size_.pixelCount(), 0);
+  sample_.informative.assign(size_.pixelCount(), 0);
   EXPECT_FALSE(PairConsistency(size_).measure(sample_, {}, thresholds_));
   EXPECT_GT(correlation, 0.9);
 }

@@ -47,7 +47,7 @@ TEST(TimingEstimateTest, NoiseTellsNothing) {
   search.range_ns = 50 * kMs;
   const TimingEstimate estimate = estimateTiming(samples, SampleGrid{kSize, 1}, search);
   EXPECT_FALSE(estimate.told);
-  EXPECT_THAT(estimate.why_not, HasSubstr("do not fit together"));
+  EXPECT_THAT(estimate.reason, HasSubstr("do not fit together"));
 }
 
 TEST(TimingEstimateTest, OnePairIsNotEnough) {
@@ -55,7 +55,7 @@ TEST(TimingEstimateTest, OnePairIsNotEnough) {
   samples.push_back(noise(1));
   const TimingEstimate estimate = estimateTiming(samples, SampleGrid{kSize, 1}, TimingSearch{});
   EXPECT_FALSE(estimate.told);
-  EXPECT_THAT(estimate.why_not, HasSubstr("fewer than two pairs"));
+  EXPECT_THAT(estimate.reason, HasSubstr("fewer than two pairs"));
 }
 
 }  // namespace

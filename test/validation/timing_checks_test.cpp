@@ -82,7 +82,7 @@ TEST(TimingChecksTest, VaryingExposuresTellStampsFromOffsets) {
 
 TEST(TimingChecksTest, WhatCannotBeToldIsSaid) {
   TimingEstimate none;
-  none.why_not = "a reason";
+  none.reason = "a reason";
   const TimingVerdict verdict = judge(none);
   EXPECT_THAT(verdict.findings, IsEmpty());
   EXPECT_THAT(verdict.notes, ElementsAre(HasSubstr("cannot be told: a reason")));

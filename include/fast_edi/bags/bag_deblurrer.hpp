@@ -64,7 +64,7 @@ class BagDeblurrer {
 
   /// Copies every message and adds the deblurred frames, each behind the message that completed it
   /// and with the same record time. At the end of the bag waiting frames are closed with what has
-  /// come. Latent images that `latent_images` asks for are written to TopicNames::outputLatent().
+  /// come. Latent images (`latent_images`) are written to TopicNames::outputLatent().
   /// Does not close the writer.
   /// \throws BagError when the output cannot be written
   BagDeblurReport run();

@@ -47,7 +47,7 @@ class MessageSource {
   /// Of a bag: "none", "bz2" or "lz4".
   virtual std::string compression() const { return "none"; }
   virtual std::uint64_t fileSize() const = 0;
-  /// The stamp of each frame is the middle of an exposure that the recording tells.
+  /// The stamp of each frame is the middle of an exposure that was recorded.
   virtual bool knowsExposures() const { return false; }
   /// Bias settings of the camera, where the recording holds them.
   virtual std::optional<BiasConfiguration> biases() const { return std::nullopt; }

@@ -1,5 +1,5 @@
 /// \file
-/// Opens a recording of any format, told by its content. Frames that a bag holds as
+/// Opens a recording of any format, recognised by its content. Frames that a bag holds as
 /// sensor_msgs/CompressedImage come decoded behind them.
 #pragma once
 

@@ -1,5 +1,5 @@
 /// \file
-/// Topics of a recording, as davis_ros_driver names them unless told otherwise.
+/// Topics of a recording, as davis_ros_driver names them by default.
 #pragma once
 
 #include <map>

@@ -32,7 +32,7 @@ struct ClockPair {
 /// For people, e.g. "the last such frame is stamped 20.000 s, the newest event 10.000 s".
 std::string toString(const ClockPair& clocks);
 
-/// Counts since construction. Nothing is lost without one of these moving.
+/// Counts since construction. Everything that is dropped or refused is counted.
 struct DeblurCounters {
   std::uint64_t events_in = 0;          ///< records that arrived
   std::uint64_t events_late = 0;        ///< older than the newest: dropped
@@ -44,7 +44,7 @@ struct DeblurCounters {
   std::uint64_t event_arrays_refused = 0;  ///< width or height not within 1..32767
   std::uint64_t event_array_gaps = 0;      ///< holes in header.seq
   std::uint64_t event_arrays_missing = 0;  ///< numbers left out by those holes
-  std::uint64_t event_restarts = 0;        ///< header.seq fell: the publisher started anew
+  std::uint64_t event_restarts = 0;        ///< header.seq fell: the publisher was restarted
   std::uint64_t event_time_jumps = 0;
   std::uint64_t frame_time_jumps = 0;
   std::uint64_t size_changes = 0;  ///< sensor size of the event arrays changed
@@ -62,8 +62,8 @@ struct DeblurCounters {
   std::uint64_t exposures_refused = 0;  ///< <= 0 or > 1 s
   std::uint64_t exposures_surplus = 0;
   std::uint64_t exposures_missing = 0;
-  std::uint64_t closes_followed = 0;  ///< window had been predicted
-  std::uint64_t closes_surprise = 0;
+  std::uint64_t windows_predicted = 0;  ///< exposures that had been predicted
+  std::uint64_t windows_not_predicted = 0;
   std::uint64_t pixels_out_of_range = 0;
 
   std::uint64_t framesPassed() const;

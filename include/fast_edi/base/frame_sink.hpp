@@ -1,5 +1,5 @@
 /// \file
-/// What goes through the pipeline, and the interface of whoever receives its output.
+/// Input and output of the pipeline, and the interface that receives the output.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ class FrameSink {
   /// Memory for the output of \p input: same size and format, written before finish(). An empty
   /// view for an empty view: what that frame's output holds is then the sink's own matter. Without
   /// filters (filter.enabled), frames may come without pixels and empty views be returned for all
-  /// of them: then no image is rendered, and finish() tells what would have become of the frame.
+  /// of them: then no image is rendered, and finish() says what would have become of the frame.
   virtual MutableImageView begin(const InputFrame& input) = 0;
   /// The memory handed out by the last begin() now holds the image that \p output describes.
   virtual void finish(const OutputFrame& output) = 0;

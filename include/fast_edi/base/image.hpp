@@ -1,5 +1,5 @@
 /// \file
-/// Views of image memory that somebody else owns.
+/// Views of image memory, without ownership.
 #pragma once
 
 #include <cstddef>

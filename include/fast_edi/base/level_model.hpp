@@ -1,5 +1,5 @@
 /// \file
-/// The level between events: what a pixel's log intensity does until the next event tells.
+/// The level between events: how a pixel's log intensity is assumed to change until the next event.
 ///
 /// An event says that the log intensity has *reached* a step; before it, it moved there. With t_k
 /// and s_k the times and steps (+c_on, -c_off) of a pixel's events, the log intensity relative to
@@ -16,7 +16,7 @@
 /// lags behind the light by half a step on average. A ramp over the whole time between two events
 /// would be wrong the other way: an edge passes quickly, and then the level stays.
 ///
-/// Every stage that asks for a level asks for this one: DoubleIntegral, LatentGains,
+/// All stages use this model: DoubleIntegral, LatentGains,
 /// OnlineCalibration, PairConsistency. Two conventions make it a function of the event stream
 /// alone, so that an image does not depend on packets or on when its frame was closed:
 /// - r_k counts in ticks (PixelEventLists keeps them with each event, also for the first events of

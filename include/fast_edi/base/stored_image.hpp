@@ -16,7 +16,7 @@ void copyPixels(const ImageView& in, const MutableImageView& out);
 class StoredImage {
  public:
   bool empty() const { return bytes_.empty(); }
-  /// Forgets the image, not its memory.
+  /// Discards the image, but keeps its memory.
   void clear() { bytes_.clear(); }
 
   /// \return room for an image; valid until the next reshape(), assign() or clear()

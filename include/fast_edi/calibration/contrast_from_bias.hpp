@@ -48,7 +48,7 @@ double biasCurrent(const BiasSetting& bias, CoarseConvention convention);
 /// and > 0
 double contrastGain(const BiasConfiguration& configuration);
 
-/// Which of the two thresholds a configuration is asked for; the other may be given explicitly.
+/// Which of the two thresholds are needed; the other may be given explicitly.
 struct NeededThresholds {
   bool on = true;
   bool off = true;
@@ -61,7 +61,7 @@ struct NeededThresholds {
 ContrastThresholds contrastFromBias(const BiasConfiguration& configuration,
                                     NeededThresholds needed = {});
 
-/// Warnings worth telling: |C| < 0.05 or > 0.6, |C_ON / C_OFF| outside 0.5..2.
+/// Unusual thresholds: |C| < 0.05 or > 0.6, |C_ON / C_OFF| outside 0.5..2.
 std::vector<std::string> contrastWarnings(const ContrastThresholds& thresholds);
 
 }  // namespace fast_edi

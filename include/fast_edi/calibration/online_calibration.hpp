@@ -1,9 +1,9 @@
 /// \file
-/// What bias settings and stamps leave open, learned from the recording itself: the contrast
-/// thresholds (biases give them to some 10 %) and the delay of the events behind the frames (the
-/// photoreceptor's bandwidth: 0.5 ms in bright and 5 ms in dim light).
+/// Learns from the recording what bias settings and stamps do not determine: the contrast
+/// thresholds (biases give them to some 10 %) and the delay of the events relative to the frames
+/// (the photoreceptor's bandwidth: 0.5 ms in bright and 5 ms in dim light).
 ///
-/// Two consecutive frames and the events of both exposures and in between say the same thing twice.
+/// The change between two consecutive frames is measured twice: by the frames and by the events.
 /// With B the blurry frames, E their double integrals and l the change of level by the events
 /// between the two reference times,
 ///
@@ -21,20 +21,20 @@
 /// exposures, so neither blur nor the quantisation at one instant biases the fit, as it would for a
 /// fit of log L2 - log L1 to counts of events.
 ///
-/// Fit: least squares over pixels that tell something (|x_on - x_off| >= 3, hardly any events back
+/// Fit: least squares over informative pixels (|x_on - x_off| >= 3, hardly any events back
 /// and forth, no grey level near black or saturation), weighted by the square of the intensity
 /// (events of dark pixels come later than those of bright ones, in which errors are seen), robust
 /// (Cauchy weights), with a ridge towards the nominal values, exponential forgetting, and limits:
 /// thresholds within 30 % of nominal, the delay within 5 ms.
 ///
-/// What is taken over: thresholds only when they differ from nominal by more than such a fit can be
-/// wrong (6 to 10 %); of the delay ln 2, where edges behind a low-pass have half of their height.
-/// An offset between the clocks is no low-pass: it belongs into `time_offset`.
+/// Thresholds are changed only if they differ from nominal by more than the error of such a fit (6
+/// to 10 %); the delay is multiplied by ln 2, the time at which an edge behind a low-pass reaches
+/// half of its height. An offset between the clocks is no low-pass: it belongs into `time_offset`.
 ///
-/// Each pair is used until kEagerFits have told something, then one of kRestFrames; the same while
-/// kPatience pairs on end have told nothing. A pair of more than Settings::most_events tells more
-/// than enough: a band of rows with about that many is used, the next pair takes the next band, and
-/// comes later by a frame for each most_events.
+/// Each pair is used until kInitialFits were informative, then one in kRestFrames frames; also
+/// after kMaxUselessPairs consecutive pairs that were not. Of a pair of more than
+/// Settings::most_events, a band of rows with about that many is used; the next pair takes the next
+/// band, and comes later by a frame for each most_events.
 ///
 /// Recordings without events between exposures exist (a driver dropped them); there the fit would
 /// be wrong and is not made.
@@ -71,9 +71,9 @@ enum class CalibrationOutcome {
 
 class OnlineCalibration {
  public:
-  static constexpr int kEagerFits = 20;
+  static constexpr int kInitialFits = 20;
   static constexpr int kRestFrames = 10;
-  static constexpr int kPatience = 5;
+  static constexpr int kMaxUselessPairs = 5;
 
   struct Settings {
     bool contrast = true;                   ///< learn the thresholds
@@ -87,7 +87,7 @@ class OnlineCalibration {
     ExposureInterval window;
     std::int64_t reference_ns = 0;
     ImageView image;              ///< the blurry one
-    const float* gain = nullptr;  ///< of DoubleIntegral::close(), not filtered
+    const float* gain = nullptr;  ///< of DoubleIntegral::integrate(), not filtered
   };
 
   OnlineCalibration(SensorSize size, ContrastThresholds nominal, Settings settings);
@@ -97,19 +97,18 @@ class OnlineCalibration {
   bool wantsNextFrame() const { return resting_ == 0; }
   /// Instead of addFrame() for a frame that is not needed.
   void skipFrame();
-  /// Compares a frame with the one before it, and takes over what follows from that if it differs
-  /// noticeably from what is in force.
+  /// Compares a frame with the previous one, and updates what is in force if the result differs
+  /// noticeably from it.
   /// \pre \p lists hold all events from neededFrom() to the end of the frame's window
   CalibrationOutcome addFrame(const Frame& frame, const CameraResponse& response,
                               const PixelEventLists& lists);
-  /// Forgets the frame before (after a gap), but not what was learned.
+  /// Discards the previous frame (after a gap), but not what was learned.
   void interrupt() { have_previous_ = false; }
 
   /// Start of the earliest event that the next addFrame() needs; INT64_MAX while it needs none.
   std::int64_t neededFrom() const;
   /// To be used for the next frame.
   const Calibration& inForce() const { return in_force_; }
-  const ContrastThresholds& nominal() const { return nominal_; }
   std::size_t memoryBytes() const;
 
  private:
@@ -136,7 +135,7 @@ class OnlineCalibration {
   Band nextBand(std::uint64_t events);
   Band gather(const Frame& frame, const PixelEventLists& lists);
   std::size_t fit(const Band& band, NormalEquations& equations) const;
-  void takeOver();
+  void updateInForce();
 
   SensorSize size_;
   ContrastThresholds nominal_;

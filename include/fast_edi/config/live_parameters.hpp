@@ -22,7 +22,7 @@ class LiveParameters {
   /// \param root what \p loaded was read from
   LiveParameters(LoadedParameters loaded, const YAML::Node& root);
 
-  /// Takes over each of \p wanted that can be used; the others keep their value.
+  /// Applies each of \p wanted that can be used; the others keep their value.
   /// \return one line for each that was refused: key, what was found and what was expected
   std::vector<std::string> change(const Values& wanted);
 

@@ -26,7 +26,7 @@ struct RosParameters {
 struct LoadedParameters {
   DeblurParameters deblur;
   RosParameters ros;
-  std::vector<std::string> warnings;  ///< e.g. an unusual threshold; worth telling, not fatal
+  std::vector<std::string> warnings;  ///< e.g. an unusual threshold; worth a message, not fatal
   /// What the thresholds in force come from: "contrast_threshold_on, contrast_threshold_off",
   /// "biases", or "biases, contrast_threshold_off" (or _on) when one of them is given explicitly.
   std::string contrast_origin;

@@ -3,9 +3,9 @@
 ///
 /// The counts of a range of the log are whole numbers: events are added at its end and taken away
 /// at its beginning in any order, and the result depends on the window alone. So events are counted
-/// ahead for the coming window, and close() mends the ends.
+/// ahead for the coming window, and count() corrects the ends.
 ///
-/// Complexity. One increment of two bytes for each event; close() costs O(events between the range
+/// Complexity. One increment of two bytes for each event; count() costs O(events between the range
 /// counted so far and the window), and O(pixels) when none of it is of use.
 #pragma once
 
@@ -22,14 +22,14 @@ class EventCounts {
  public:
   explicit EventCounts(SensorSize size) : counts_(2 * size.pixelCount()) {}
 
-  /// Forgets what was counted. Must be called when the lists were flushed or reset.
-  void forget();
+  /// Discards all counts. Must be called when the lists were flushed or reset.
+  void reset();
   /// Counts what the lists hold of the coming window, in event time.
-  void follow(const PixelEventLists& lists, const ExposureInterval& window);
+  void accumulate(const PixelEventLists& lists, const ExposureInterval& window);
   /// Counts the events in [window.start, window.end).
-  void close(const PixelEventLists& lists, const ExposureInterval& window);
+  void count(const PixelEventLists& lists, const ExposureInterval& window);
 
-  /// Events of a pixel (row-major index) in the window of the last close(), modulo 65536.
+  /// Events of a pixel (row-major index) in the window of the last count(), modulo 65536.
   std::uint16_t off(std::size_t pixel) const { return counts_[2 * pixel]; }
   std::uint16_t on(std::size_t pixel) const { return counts_[2 * pixel + 1]; }
   /// OFF and ON counts of all pixels, interleaved: 2 * pixelCount() values.

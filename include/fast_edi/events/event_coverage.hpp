@@ -28,7 +28,7 @@ class EventCoverage {
   /// True when the stream counts as complete from later than \p t_ns only, discarded or not.
   bool beganAfter(std::int64_t t_ns) const { return started_ && began_ns_ > t_ns; }
 
-  /// Nothing before \p t_ns will be asked for any more; asked for all the same, it is not covered.
+  /// Events before \p t_ns are no longer needed; from now on, that time counts as not covered.
   void discardBefore(std::int64_t t_ns);
 
   /// Events are missing from \p from_ns on, until closeHole().

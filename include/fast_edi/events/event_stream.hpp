@@ -1,6 +1,6 @@
 /// \file
-/// What stands in front of the lists: takes event arrays as they come and sees to sensor size,
-/// lost arrays, jumps of the event clock and the times for which events are complete.
+/// Feeds event arrays into the lists. Checks sensor size, lost arrays and jumps of the event clock,
+/// and keeps track of the times for which events are complete.
 ///
 /// Time jumps. Back: the events go back by more than max_backward_jump and stay there to the end of
 /// their array. Ahead: more than max_forward_jump, and the next array that holds events lies there
@@ -31,8 +31,8 @@
 
 namespace fast_edi {
 
-/// Why the lists are about to be emptied.
-enum class StreamBreak {
+/// Why the lists are emptied.
+enum class StreamReset {
   kTimeJump,    ///< the event clock jumped
   kSizeChange,  ///< the sensor's size changed; the clock goes on
 };
@@ -41,13 +41,13 @@ class EventStream {
  public:
   /// Called just before the lists are emptied: the last chance to use what they hold.
   /// \param next_event_ns the first event of the new epoch
-  using BreakHandler = std::function<void(StreamBreak kind, std::int64_t next_event_ns)>;
+  using ResetHandler = std::function<void(StreamReset kind, std::int64_t next_event_ns)>;
 
   static constexpr int kMaxSide_px = 32767;
   static constexpr std::uint64_t kMostReadings = 10;
 
   /// \param counters all events_... and event_... are counted there; must outlive this object
-  EventStream(PixelEventLists::Limits limits, DeblurCounters& counters, BreakHandler before_break);
+  EventStream(PixelEventLists::Limits limits, DeblurCounters& counters, ResetHandler before_reset);
 
   /// One event array; see Deblurrer::addEvents(). \param sequence nothing: arrays have no numbers
   void take(const WireEvents& events, SensorSize size, std::optional<std::uint32_t> sequence);
@@ -57,16 +57,16 @@ class EventStream {
   void noteMissing();
   /// Drops events whose time jump is not confirmed: no array will come any more.
   void dropHeld();
-  /// Empties everything; the next array starts up anew.
+  /// Empties everything; the next array starts a new stream.
   void restart();
   /// See PixelEventLists::keepIntervals(). \pre seen()
   void keepIntervals(bool keep) { lists_->keepIntervals(keep); }
   /// Changes of limits empty the lists.
   void setLimits(PixelEventLists::Limits limits);
-  /// Nothing before \p t_ns will be asked for any more.
+  /// Events before \p t_ns are no longer needed.
   void discardBefore(std::int64_t t_ns);
 
-  /// True from noteMissing() until the next array: to wait for events is no use.
+  /// True from noteMissing() until the next array: waiting for events is useless.
   bool stopped() const { return stopped_; }
   /// True once a valid array came, be it empty.
   bool seen() const { return seen_; }
@@ -92,7 +92,7 @@ class EventStream {
  private:
   void markMissingArrays();
   void setSize(SensorSize size, const WireEvents& next);
-  void decideHeld(std::int64_t next_array_ns);
+  void resolveHeldJump(std::int64_t next_array_ns);
   void ingest(WireEvents events, bool may_jump);
   void beginEpoch(std::int64_t first_event_ns);
   void noteAccepted(std::uint64_t sequence);
@@ -100,7 +100,7 @@ class EventStream {
 
   PixelEventLists::Limits limits_;
   DeblurCounters& counters_;
-  BreakHandler before_break_;
+  ResetHandler before_reset_;
   std::unique_ptr<PixelEventLists> lists_;
   bool seen_ = false;
   SequenceGaps sequence_gaps_;
@@ -109,7 +109,7 @@ class EventStream {
   EventCoverage coverage_;
   std::uint64_t generation_ = 0;
   std::uint64_t records_read_ = 0;
-  std::int64_t announced_ns_ = INT64_MIN;  ///< while breaking: the event that is known to come next
+  std::int64_t next_event_ns_ = INT64_MIN;  ///< known to come next, while the lists are reset
 
   std::vector<std::uint8_t> held_;  ///< wire records that wait for their jump to be confirmed
   TimeJump held_jump_;

@@ -7,7 +7,7 @@
 ///
 /// Layout. The lists of all pixels are interleaved in one time-ordered log of 8-byte records
 /// {time since the chunk's base [ns], pixel index and polarity}, kept in chunks of
-/// kChunkEvents records. Appending is a sequential store; dropping what no coming frame can ask for
+/// kChunkEvents records. Appending is a sequential store; dropping what no later frame needs
 /// returns whole chunks to a free list.
 ///
 /// Invariants

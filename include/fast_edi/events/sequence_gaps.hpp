@@ -7,16 +7,16 @@
 
 namespace fast_edi {
 
-/// What a sequence number tells about messages between the last one and this one.
+/// What a sequence number says about messages between the last one and this one.
 enum class SequenceStep {
   kNothingMissing,  ///< or nothing known
   kGap,             ///< messages were lost on the way
-  kRestart,         ///< the publisher started anew: there is a time in which it published nothing
+  kRestart,         ///< the publisher was restarted: there is a time in which it published nothing
 };
 
-/// Numbers that were growing and leave some out tell of a gap, those that were growing and fall of
-/// a publisher that started anew, from 0 or 1. Otherwise they say nothing: within a nodelet manager
-/// every message may carry the same number.
+/// Increasing numbers with some left out mean a gap, increasing numbers that fall mean
+/// a publisher that was restarted, from 0 or 1. Otherwise they say nothing: within a nodelet
+/// manager every message may carry the same number.
 class SequenceGaps {
  public:
   SequenceStep step(std::uint32_t sequence) {

@@ -1,5 +1,5 @@
 /// \file
-/// Tells a jump of the event clock from stray events, as far as one array can.
+/// Distinguishes a jump of the event clock from stray events, as far as one array allows.
 ///
 /// An event that is too far from the newest one begins a *run*: it and the events after it that lie
 /// closer to their predecessor than to the newest event (and, for a jump ahead, beyond the limit

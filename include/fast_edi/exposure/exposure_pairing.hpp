@@ -7,19 +7,17 @@
 /// Rules
 /// - An image waits for its message until the timeout; then the message counts as missing. A
 ///   message waits for its image just as long; then it counts as surplus.
-/// - A message that gets lost leaves every later image with its successor's message, a period late,
-///   and no timeout strikes when the period is shorter. So: when all through a timeout at least one
-///   image was waiting, that many messages are missing, and the pairing starts anew behind the
-///   images that waited for them. The same holds for messages.
-/// - An image that gets lost leaves every later image with its predecessor's message. So: when all
-///   through a timeout each image found a message that had been there for more than half the time
-///   since the image before, one message is surplus.
-/// - When nothing was heard within the first timeout, images do not wait until a message comes.
-/// That
+/// - After a lost message, every later image gets its successor's message, one period late, and no
+///   timeout expires if the period is shorter. So: if at least one image was waiting throughout a
+///   timeout, that many messages are missing, and pairing restarts behind the images that waited
+///   for them. The same holds for messages.
+/// - After a lost image, every later image gets its predecessor's message. So: if throughout a
+///   timeout each image found a message that had been waiting for more than half the time since the
+///   previous image, one message is surplus.
+/// - If no message arrives within the first timeout, images do not wait until one does. That
 ///   message belongs to an image that did not wait for it; pairing starts at the next image.
-/// - A message that is refused (<= 0 or > 1 s) takes its place in the order, so that later ones
-/// stay
-///   with their images; its image is given none.
+/// - A refused message (<= 0 or > 1 s) keeps its place in the order, so that later ones stay with
+///   their images; its image gets none.
 #pragma once
 
 #include <cstddef>
@@ -34,8 +32,8 @@ namespace fast_edi {
 
 /// The end of an image's wait.
 struct ExposureMatch {
-  std::uint64_t image = 0;             ///< the number given to addImage()
-  std::optional<std::int64_t> own_ns;  ///< length by the image's own message, if it has a valid one
+  std::uint64_t image = 0;                ///< the number given to addImage()
+  std::optional<std::int64_t> length_ns;  ///< by the image's own message, if it has a valid one
 };
 
 class ExposurePairing {
@@ -55,7 +53,7 @@ class ExposurePairing {
 
   /// Takes note of a message's value without pairing it.
   void note(std::int32_t exposure_us);
-  /// Starts anew with the next image or message. The last value received stays.
+  /// Restarts with the next image or message. The last value received stays.
   void restart();
   void setTimeout(std::int64_t timeout_ns) { timeout_ns_ = timeout_ns; }
 
@@ -76,8 +74,8 @@ class ExposurePairing {
   void dropImages(std::size_t count, std::vector<ExposureMatch>& matches);
   void dropMessages(std::size_t count);
   bool isOneMessageAhead(std::int64_t now_ns);
-  void watch(std::int64_t now_ns);
-  void watchAnew(std::int64_t now_ns);
+  void updateUnmatched(std::int64_t now_ns);
+  void restartUnmatched(std::int64_t now_ns);
 
   DeblurCounters& counters_;
   std::int64_t timeout_ns_;
@@ -87,12 +85,12 @@ class ExposurePairing {
   std::deque<WaitingImage> images_;
   std::deque<WaitingMessage> messages_;
 
-  bool heard_ = false;  ///< a message came since the start
-  bool deaf_ = false;   ///< nothing was heard within the first timeout: images do not wait
+  bool any_received_ = false;      ///< since the start
+  bool without_messages_ = false;  ///< none within the first timeout: images do not wait
   std::optional<std::int64_t> first_image_ns_;
 
-  // How many have been waiting all the time since unmatched_since_ns_.
-  std::size_t least_unmatched_ = 0;
+  // The smallest number that waited since unmatched_since_ns_.
+  std::size_t min_unmatched_ = 0;
   std::int64_t unmatched_since_ns_ = 0;
 
   std::optional<std::int64_t> last_image_ns_;   ///< its arrival

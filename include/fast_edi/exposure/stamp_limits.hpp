@@ -1,5 +1,5 @@
 /// \file
-/// The instants that stamps of messages can tell: 32-bit seconds, from 0.
+/// The range of stamps of messages: 32-bit seconds, from 0.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 /// \file
-/// Predicts the next exposure of a periodic camera, so that its integral can be kept up while its
-/// events come. A wrong prediction costs time, never correctness.
+/// Predicts the next exposure of a periodic camera, so that its events can be integrated as they
+/// arrive. A wrong prediction costs time, never correctness.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ class WindowPredictor {
 
   /// An exposure that was, in the order of frames.
   void observe(const ExposureInterval& exposure);
-  /// Forgets all: the frames' clock jumped.
+  /// Discards all observations: the frames' clock jumped.
   void reset();
 
   /// The last start plus the period, with the last length. The period is the median of the last

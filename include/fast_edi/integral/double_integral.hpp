@@ -19,31 +19,31 @@
 /// nothing is known when it is closed.
 ///
 /// Method. The window is cut at f. With A the integral over [start, f) and B the one over [f, end),
-/// the latter relative to f, E(f) = (A / v(f) + B) / T. Each of both is a running sum (16 bytes per
-/// pixel, see running_integral.hpp) that events are folded into as they come. An event's ramp
-/// counts whole in the part that the event lies in: a ramp across f belongs to a pixel without
-/// events between the ramp's start and f, so in either part it is relative to the same value. Two
-/// sweeps over the events of the first tau of the window and of the time after f settle what is
-/// left: the part of ramps before the window, and the fraction of its next step that each pixel has
-/// gone at f.
+/// the latter relative to f, E(f) = (A / v(f) + B) / T. Both are running sums (16 bytes per pixel,
+/// see running_integral.hpp) that events are folded into as they arrive. An event's ramp counts
+/// whole in the part that contains the event: a ramp across f belongs to a pixel without events
+/// between the ramp's start and f, so in either part it is relative to the same value. Two sweeps
+/// correct this at the ends: over the events of the first tau of the window, whose ramps began
+/// before it, and over those of the time after f, for the fraction of its next step that a pixel
+/// has already made at f.
 ///
-/// Running ahead. expect() names the window of the coming frame; follow() folds its events in as
-/// they come, short of the ends. close() with the true window does what is left: the events near
-/// the ends and near the reference time, and a sweep over the pixels. When the expectation was
-/// wrong, close() starts anew from the log ("surprise"). The result does not depend on how it was
-/// reached, nor on packets or earlier frames, bit for bit.
+/// Prediction. predictWindow() names the window of the coming frame; accumulate() folds its events
+/// in as they arrive, except those close to the ends. integrate() with the true window then has
+/// little left to do: the events near the ends and near the reference time, and one pass over the
+/// pixels. If the prediction was wrong, integrate() restarts from the log. The result is the same
+/// bit for bit, however it was reached, and depends neither on packets nor on earlier frames.
 ///
-/// Complexity. follow() O(new events), close() O(events within a millisecond or so + pixels) when
-/// the window was expected, O(events in the window + pixels) otherwise. Wins when exposures are
-/// periodic, which cameras' are; loses when every exposure differs by more than microseconds from
-/// the one before it: then events are folded twice.
+/// Complexity. accumulate() O(new events). integrate() O(events within a millisecond or so +
+/// pixels) if the window was predicted, else O(events in the window + pixels). This pays off for
+/// periodic exposures, which cameras have; if every exposure differs by more than microseconds from
+/// the previous one, events are folded twice.
 ///
 /// Numerics. Everything in double; error about 1e-16 * (sum of |v_{k-1} (1 - m_k)| u_k) against the
 /// integral, far below 1e-4 relative for a million events of one pixel. A value that leaves the
-/// range of double (some 2700 net events of one polarity) makes the pixel's gain 1: see close().
-/// Gains are kept within [kMinGain, kMaxGain], far beyond what any image can show. Not covered: a
-/// pixel that climbs by more than some 100 net events and back within one and the same time stamp;
-/// no sensor does that, and its gain is then finite but wrong.
+/// range of double (some 2700 net events of one polarity) makes the pixel's gain 1: see
+/// integrate(). Gains are kept within [kMinGain, kMaxGain], far beyond what any image can show. Not
+/// covered: a pixel that climbs by more than some 100 net events and back within one and the same
+/// time stamp; no sensor does that, and its gain is then finite but wrong.
 #pragma once
 
 #include <cstdint>
@@ -56,16 +56,16 @@
 
 namespace fast_edi {
 
-/// How a window was closed, for diagnostics and tests; the result is the same.
-enum class CloseKind {
-  kFollowed,  ///< running sums were used
-  kSurprise,  ///< the window's events were walked
+/// How a window was integrated, for diagnostics and tests; the result is the same.
+enum class IntegrationKind {
+  kPredicted,     ///< running sums were used
+  kNotPredicted,  ///< all events of the window were folded
 };
 
-struct CloseReport {
-  CloseKind kind = CloseKind::kSurprise;
+struct IntegrationReport {
+  IntegrationKind kind = IntegrationKind::kNotPredicted;
   std::uint64_t events = 0;      ///< events inside the window
-  std::uint64_t walked = 0;      ///< events handled by close() itself
+  std::uint64_t walked = 0;      ///< events folded by integrate() itself
   std::size_t out_of_range = 0;  ///< pixels whose value left the range of double
 };
 
@@ -79,13 +79,13 @@ class DoubleIntegral {
   DoubleIntegral(const DoubleIntegral&) = delete;
   DoubleIntegral& operator=(const DoubleIntegral&) = delete;
 
-  /// Names the window and reference time that the next close() will probably ask for, in event
-  /// time. Forgets running sums of any other window.
-  void expect(const ExposureInterval& window, std::int64_t reference_ns);
-  /// Forgets running sums and expectation. Must be called when the lists were flushed or reset.
-  void forget();
-  /// Folds in what the lists hold of the expected window. Cheap when there is nothing to do.
-  void follow(const PixelEventLists& lists);
+  /// Predicts window and reference time of the next integrate(), in event time. Running sums of any
+  /// other window are discarded.
+  void predictWindow(const ExposureInterval& window, std::int64_t reference_ns);
+  /// Discards running sums and prediction. Must be called when the lists were flushed or reset.
+  void reset();
+  /// Folds in what the lists hold of the predicted window. Cheap when there is nothing to do.
+  void accumulate(const PixelEventLists& lists);
 
   /// Computes gain = 1 / E(reference) for every pixel, row-major.
   ///
@@ -95,11 +95,11 @@ class DoubleIntegral {
   /// \param reference_ns in [window.start, window.end]
   /// \param gain pixelCount() floats, written
   /// \pre lists.size() equals the size given at construction; window.length() > 0; unless the level
-  ///      model is the staircase, the lists keep intervals, as for follow()
-  CloseReport close(const PixelEventLists& lists, const ExposureInterval& window,
-                    std::int64_t reference_ns, float* gain);
+  ///      model is the staircase, the lists keep intervals, as for accumulate()
+  IntegrationReport integrate(const PixelEventLists& lists, const ExposureInterval& window,
+                              std::int64_t reference_ns, float* gain);
 
-  /// Changes the thresholds; running sums start anew.
+  /// Changes the thresholds; running sums restart.
   void setThresholds(ContrastThresholds thresholds);
   ContrastThresholds thresholds() const { return thresholds_; }
   Weighting weighting() const { return weighting_; }

@@ -16,8 +16,8 @@
 /// double integral itself is not computed again.
 ///
 /// Numerics. One double for each pixel, one rounding for each event: equal to
-/// DoubleIntegral::close() at that instant within 1e-6, apart from pixels that leave the range of
-/// double there.
+/// DoubleIntegral::integrate() at that instant within 1e-6, apart from pixels that leave the range
+/// of double there.
 #pragma once
 
 #include <cstddef>
@@ -39,8 +39,9 @@ class LatentGains {
   };
 
   /// Begins at a frame's reference time.
-  /// \param gain lists.size().pixelCount() gains of DoubleIntegral::close(), not filtered; copied
-  /// \param reference of the gains: the reference time and the end of the window, in event time
+  /// \param gain lists.size().pixelCount() gains of DoubleIntegral::integrate(), not filtered;
+  /// copied \param reference of the gains: the reference time and the end of the window, in event
+  /// time
   void start(const float* gain, const PixelEventLists& lists, const LevelInstant& reference,
              const Model& model);
 

@@ -29,10 +29,10 @@ class LatentImage {
  public:
   explicit LatentImage(const FilterParameters& parameters);
 
-  /// Takes over other parameters; the filters are rebuilt when next used.
+  /// Changes parameters; the filters are rebuilt when next used.
   void setParameters(const FilterParameters& parameters);
 
-  /// \param gain width x height gains of DoubleIntegral::close(); filtered in place
+  /// \param gain width x height gains of DoubleIntegral::integrate(); filtered in place
   /// \param events of the exposure of the blurry frame
   /// \pre blurry and out have the same size and format
   void write(const ImageView& blurry, float* gain, const ExposureEvents& events,

@@ -38,7 +38,7 @@ std::vector<std::int64_t> instantsWithin(const ExposureInterval& exposure,
 
 /// Instants in the gap [gap.start, gap.end) between two exposures, in order: the middles of equal
 /// parts about as long as those of the exposure after it, but no more than per_exposure of them,
-/// so that a short exposure does not ask for a flood; or those of the film.
+/// so that a short exposure does not cause a flood of images; or those of the film.
 /// \param exposure_ns length of the exposure after the gap
 std::vector<std::int64_t> instantsBetween(const ExposureInterval& gap, std::int64_t exposure_ns,
                                           const LatentSampling& sampling);

@@ -1,6 +1,6 @@
 /// \file
-/// The latent image of mid-exposure for a frame that is shown at another instant: what that image
-/// is steadied by (see motion_compensation.hpp).
+/// The latent image of mid-exposure for a frame that is shown at another instant, whose image is
+/// stabilised with it (see motion_compensation.hpp).
 ///
 ///     gains at the reference -> LatentGains at mid-exposure -> LatentImage
 ///

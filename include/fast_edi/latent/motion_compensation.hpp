@@ -1,15 +1,15 @@
 /// \file
-/// Steadies a latent image by another one of the same exposure, along the motion between them.
+/// Stabilises a latent image with that of mid-exposure, warped along the optical flow between them.
 ///
-/// What events say of the change from the middle of an exposure to another instant t grows less
-/// certain with every event and with all that stays below the contrast threshold; the image of the
-/// middle is the best there is, since there the errors before and behind weigh least. So
+/// The change between mid-exposure and another instant t, integrated from events, becomes less
+/// certain with every event and with every change below the contrast threshold. Mid-exposure has
+/// the smallest error, since errors of both halves partly cancel there. So
 ///
 ///     L'(x, t) = L(x, t) + w(x) (L(x + u, middle) - L(x, t))
 ///
 /// with u the OpticalFlow from t to the middle. w falls from 0.9 to 0 where the difference,
-/// averaged over 5 x 5 px so that noise does not count, passes a tenth of the level: what moves by
-/// itself, what is covered or comes into sight, and light that changes stays as events say. Levels
+/// averaged over 5 x 5 px against noise, exceeds a tenth of the level: independent motion,
+/// occlusions and changes of illumination remain as events give them. Levels
 /// between pixels are interpolated by cubic splines (Catmull-Rom). Pixels of a Bayer mosaic are
 /// interpolated from those of their colour.
 #pragma once

@@ -1,14 +1,14 @@
 /// \file
-/// Draws each latent image towards the one before it, carried on by the events between the two.
+/// Blends each latent image with the previous one, propagated by the events between the two.
 ///
-/// With L1' the image before as it was shown, T1 and T2 the lengths of both exposures and l the
+/// With L1' the previous output, T1 and T2 the lengths of both exposures and l the
 /// change of a pixel's level between both references (see level_model.hpp),
 ///
 ///     P = L1' exp(l) T2 / T1,    L2' = L2 + w (P - L2)
 ///
-/// Consecutive images then agree better with the events between them, which is what trackers go by
-/// that follow an image by its events. Each of them alone is farther from the truth: P has the
-/// noise of all the events of the way. Pixels that are saturated in either image stay as they are.
+/// Consecutive images then agree better with the events between them, on which event-based trackers
+/// rely. Each single image is farther from the truth: P has the noise of all events in between.
+/// Pixels that are saturated in either image are not changed.
 ///
 /// Complexity. O(events between both references + pixels). Memory once used: 24 B per pixel and two
 /// images.
@@ -28,25 +28,25 @@ namespace fast_edi {
 
 class TemporalFusion {
  public:
-  /// Longer without a frame, and what events say of the way is worth nothing.
+  /// Over a longer gap, the image propagated by events is too uncertain to be of use.
   static constexpr std::int64_t kMaxGap_ns = kNanosecondsPerSecond;
 
-  /// A frame, by what carries an image from one to the next.
+  /// What is needed of a frame to propagate its image to the next one.
   struct Frame {
     LevelInstant reference;        ///< of the image, in event time
     std::int64_t exposure_ns = 0;  ///< > 0
     std::uint64_t epoch = 0;       ///< of the frames' clock
   };
 
-  /// \param image latent image of the frame; changed in place, unless there is none before it, or
+  /// \param image latent image of the frame; changed in place, unless there is no previous one, or
   ///        events between the two are missing
   /// \param weight w, within limits::kFilterTemporal
-  /// \return whether it was drawn
+  /// \return whether it was blended
   bool apply(const Frame& frame, const EventStream& events, const LatentGains::Model& model,
              const CameraResponse& response, double weight, const MutableImageView& image);
 
-  /// The next image has none before it.
-  void forget() { last_.clear(); }
+  /// The next image has no previous one.
+  void reset() { last_.clear(); }
 
   std::size_t memoryBytes() const;
 
@@ -57,7 +57,7 @@ class TemporalFusion {
 
   Frame last_frame_;
   std::uint64_t last_generation_ = 0;  ///< of the event lists
-  StoredImage last_;                   ///< as it was shown; empty: none
+  StoredImage last_;                   ///< the previous output; empty: none
   StoredImage carried_;
   LatentGains change_;
   std::vector<float> gain_;

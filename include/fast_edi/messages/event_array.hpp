@@ -10,8 +10,7 @@
 /// - EventArray owns its records: one block copy out of the receive buffer, which roscpp frees as
 ///   soon as a message is deserialised.
 /// - EventArrayView points into the buffer it was read from: no copy at all. For rosbag alone,
-/// whose
-///   buffer stays until the next message is read; never subscribe with it.
+///   where the buffer stays until the next message is read; never subscribe with it.
 ///
 /// Reading trusts no length: an array that claims more records than its message holds throws
 /// ros::serialization::StreamOverrunException before anything is allocated.

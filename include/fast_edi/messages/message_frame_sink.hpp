@@ -45,7 +45,7 @@ class MessageFrameSink : public FrameSink {
   MessageFrameSink(std::string frame_id, Deliver deliver);
 
   /// Who wants the high-rate video, if anybody.
-  /// \param wanted asked for each frame
+  /// \param wanted called for each frame
   void setLatent(std::function<bool()> wanted, DeliverLatent deliver);
 
   /// The calibration for all later frames.

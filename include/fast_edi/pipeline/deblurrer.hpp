@@ -8,11 +8,11 @@
 ///
 /// When the sink wants a high-rate video, LatentVideo computes it behind each deblurred frame.
 ///
-/// Frames wait in one queue and leave it in the order of their arrival. WindowPredictor tells
-/// DoubleIntegral beforehand which window comes next.
+/// Frames wait in one queue and leave it in the order of their arrival. WindowPredictor predicts
+/// the next window, so that DoubleIntegral accumulates its events as they arrive.
 ///
 /// Clock. `now_ns` is the arrival time on a clock that never goes back: a steady clock live, the
-/// bag's record time offline. It serves the close timeout alone and is never compared with stamps.
+/// bag's record time offline. It is used for the close timeout only and never compared with stamps.
 ///
 /// Not thread safe: calls must not overlap. Never throws out of the add...() and advance() calls
 /// except std::bad_alloc.
@@ -30,7 +30,7 @@
 
 namespace fast_edi {
 
-/// State of the moment, for diagnostics.
+/// Current state, for diagnostics.
 struct DeblurStatus {
   std::size_t buffered_events = 0;
   std::size_t buffer_bytes = 0;  ///< lists and per-pixel state
@@ -39,7 +39,7 @@ struct DeblurStatus {
   bool exposure_known = false;
   SensorSize sensor_size;  ///< zero until the first event array or frame
   std::int64_t last_exposure_ns = 0;
-  ContrastThresholds thresholds;    ///< in force: as given, or as learned
+  ContrastThresholds thresholds;    ///< in force: given or learned
   std::int64_t event_delay_ns = 0;  ///< as learned
   /// At the last frame that was passed through for PassReason::kClocksDiffer; zero before.
   ClockPair differing_clocks;
@@ -54,8 +54,8 @@ class Deblurrer {
   Deblurrer(const Deblurrer&) = delete;
   Deblurrer& operator=(const Deblurrer&) = delete;
 
-  /// One event array. \p size is what the array says of the sensor, \p sequence its header.seq
-  /// (holes in it are counted and mark events as missing; a value that does not grow says nothing).
+  /// One event array. \p size is the sensor size that the array states, \p sequence its header.seq
+  /// (gaps are counted and mark events as missing; a value that does not increase is ignored).
   void addEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                  std::int64_t now_ns);
   /// The same for plain events: same images, same counters. Events whose time lies outside
@@ -65,34 +65,33 @@ class Deblurrer {
   /// \param size width and height of the sensor
   /// \param now_ns arrival time, see above
   void addEvents(const Event* events, std::size_t count, SensorSize size, std::int64_t now_ns);
-  /// Events that were dropped on their way here, between the last array and the next, because too
-  /// many were waiting: counted as arrived and overflowed, and missing in the frames they belong
-  /// to.
+  /// Events between the last array and the next were dropped before they got here, because too many
+  /// were waiting: counted as arrived and overflowed, and missing in the frames they belong to.
   void noteLostEvents(std::size_t events);
-  /// Arrays will be missing between the last one and the next: whoever feeds this stopped
-  /// listening. How many will be told by their numbers. Until the next array, frames that would
-  /// wait for events are passed through at once.
+  /// Arrays will be missing between the last one and the next: the caller does not receive any for
+  /// now. The next array's sequence number tells how many. Until then, frames that would wait for
+  /// events are passed through at once.
   void noteMissingArrays();
   void addFrame(InputFrame frame, std::int64_t now_ns);
   void addExposure(std::int32_t exposure_us, std::int64_t now_ns);
-  /// Closes what the passing of time alone decides. Call it at least every few milliseconds.
+  /// Closes frames whose timeout has expired. Call it at least every few milliseconds.
   void advance(std::int64_t now_ns);
-  /// Closes all waiting frames with what has come: the end of a bag.
+  /// Closes all waiting frames with the events received so far: the end of a bag.
   void finish();
-  /// Forgets events and waiting frames (which get no output: frames_abandoned):
-  /// for the time nobody listened. The next events start up anew.
+  /// Discards events and waiting frames (which get no output: frames_abandoned), for a time in
+  /// which nothing is received. The next events start a new stream.
   void pause();
 
-  /// Takes over new parameters between two frames. Frames closed from now on, those that wait
-  /// included, are those of a fresh object with the new parameters, bit for bit, as far as events
-  /// are still there: a window moved back to before the last frame's start has lost its own. Two
-  /// things that have come before matter nevertheless (filter.temporal begins anew):
-  /// - What was learned from the recording stays as long as what it was learned under does. It is
-  ///   forgotten, and learning starts anew from the values given, when the thresholds, the time
-  ///   offset, event_mapping, weighting, response, the place of exposures (stamp_reference,
-  ///   exposure_source, exposure_time), filter.enabled or what to learn changes.
-  /// - Output stamps go on increasing: a frame that another `reference` would place at or before
-  ///   the last output is suppressed.
+  /// Changes parameters between two frames. Frames closed from now on, including those that wait,
+  /// are those of a new object with the new parameters, bit for bit, as long as their events are
+  /// still stored: events before the start of the last frame are not. Two things are kept
+  /// (filter.temporal restarts):
+  /// - What was learned from the recording, unless the thresholds, the time offset, event_mapping,
+  ///   weighting, response, the exposure intervals (stamp_reference, exposure_source,
+  ///   exposure_time), filter.enabled or what to learn changes: then learning restarts from the
+  ///   given values.
+  /// - Output stamps keep increasing: a frame that another `reference` would place at or before the
+  ///   last output is suppressed.
   /// Frames whose exposure message is awaited stop waiting when exposure_source changes.
   ///
   /// No event is lost, except that new limits (max_buffered_events, max_backward_jump,
@@ -103,7 +102,7 @@ class Deblurrer {
   const DeblurParameters& parameters() const;
 
   const DeblurCounters& counters() const;
-  /// That part of status() alone, which costs nothing to know.
+  /// As in status(), without the cost of the rest.
   std::size_t bufferedEvents() const;
   DeblurStatus status() const;
 

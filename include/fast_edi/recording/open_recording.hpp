@@ -1,5 +1,5 @@
 /// \file
-/// Recordings by their content: what a file is called does not matter.
+/// Opens recordings; their format is recognised by content, not by file name.
 #pragma once
 
 #include <memory>

@@ -31,14 +31,14 @@ struct RecordedStream {
   StreamKind kind = StreamKind::kEvents;
   std::string name;    ///< e.g. "events"; may be empty
   std::string camera;  ///< streams of one camera have the same; may be empty
-  SensorSize size;     ///< zero where the recording does not tell it
+  SensorSize size;     ///< zero if it was not recorded
 };
 
 /// Consecutive events of one sensor, origin top left. Times are within isStamp().
 struct RecordedEvents {
   const Event* data = nullptr;
   std::size_t count = 0;
-  /// Arrays or packets right before these that the recorder did not get, as far as it tells.
+  /// Arrays or packets right before these that the recorder missed, as far as it noticed.
   std::uint32_t lost_arrays = 0;
 };
 
@@ -82,7 +82,7 @@ constexpr std::size_t kMaxItemEvents = 100'000;
 /// What lies at one place of a recording. Pointers are valid until the next call of next().
 struct RecordingItem {
   std::size_t stream = 0;  ///< index into Recording::streams()
-  /// When the recorder had it, or the latest time that the item tells; never goes back.
+  /// When it was recorded, or the latest time in the item; never goes back.
   std::int64_t record_ns = 0;
   std::variant<RecordedEvents, RecordedFrame, RecordedImu, RecordedTrigger, RecordedCalibration>
       content;

@@ -4,10 +4,9 @@
 ///
 /// - Events: `EventArray` of dvs_msgs, dv_ros2_msgs, dv_ros_msgs and prophesee_event_msgs;
 ///   event_camera_msgs/EventPacket (see event_packet_decoder.hpp).
-/// - Frames: sensor_msgs/Image. Where there is a topic `exposure` (std_msgs/Int32, microseconds)
-/// beside
-///   them, each waits for the message behind it, whose exposure it has; one that is followed by the
-///   next frame first has no known exposure.
+/// - Frames: sensor_msgs/Image. If there is a topic `exposure` (std_msgs/Int32, microseconds)
+///   beside them, each frame gets its exposure time from the message after it; if the next frame
+///   comes first, its exposure is not known.
 /// - sensor_msgs/Imu and CameraInfo.
 ///
 /// Streams of one namespace are those of one camera. The only frames of a recording belong to the

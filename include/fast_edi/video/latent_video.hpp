@@ -49,7 +49,7 @@ class LatentVideo {
             const EventCounts& counts, const PixelEventLists& lists, const LevelInstant& reference,
             const DeblurParameters& parameters);
 
-  /// What the images of this frame are steadied by; without it, none is.
+  /// Stabilises the images of this frame; without it, none is stabilised.
   /// \param middle its latent image at mid-exposure; copied
   /// \pre take() was called for this frame
   void setMiddle(const ImageView& middle) { current_.middle.assign(middle); }
@@ -60,7 +60,7 @@ class LatentVideo {
   std::size_t write(const EventStream& events, const DeblurParameters& parameters);
 
   /// The next frame has no predecessor to bridge a gap to.
-  void breakOff();
+  void interrupt();
 
   std::size_t memoryBytes() const;
 

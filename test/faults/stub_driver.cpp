@@ -4,10 +4,10 @@
 #include <ros/init.h>
 #include <ros/time.h>
 
-#include "rostest/made_up_camera.hpp"
+#include "rostest/stub_camera.hpp"
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "made_up_driver");
+  ros::init(argc, argv, "stub_driver");
   const ros::NodeHandle keeps_ros_running;
   fast_edi::test::RecordingSettings settings;
   settings.start_ns = static_cast<std::int64_t>(ros::WallTime::now().toNSec());
@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   settings.array_period_ns = 10 * fast_edi::kNanosecondsPerMillisecond;
   // Begins with a frame rather than with events, as a driver may.
   settings.first_exposure_ns = 0;
-  const fast_edi::test::MadeUpCamera camera("", settings, 1);
+  const fast_edi::test::StubCamera camera("", settings, 1);
   ros::spin();
   return 0;
 }

@@ -1,6 +1,6 @@
 /// \file
-/// A callback queue with a thread of its own, for what need not and must not share the thread of
-/// the inputs.
+/// A callback queue with its own thread, for callbacks that must not share the thread of the
+/// inputs.
 #pragma once
 
 #include <atomic>
@@ -19,13 +19,13 @@ namespace fast_edi {
 /// its publisher is just ending (Publication::peerConnect takes no lock), so it may be queued after
 /// the publisher is gone, and image_transport's callback then works on freed memory. With this
 /// class: stop() first, end the publishers then; what is still queued is never called.
-class SideThread {
+class CallbackThread {
  public:
-  SideThread() = default;
+  CallbackThread() = default;
   /// Waits for a callback at work: the caller must hold no lock that this may want.
-  ~SideThread() { stop(); }
-  SideThread(const SideThread&) = delete;
-  SideThread& operator=(const SideThread&) = delete;
+  ~CallbackThread() { stop(); }
+  CallbackThread(const CallbackThread&) = delete;
+  CallbackThread& operator=(const CallbackThread&) = delete;
 
   /// The same node and namespace, with callbacks in this thread.
   ros::NodeHandle handle(const ros::NodeHandle& nh);

@@ -17,15 +17,15 @@ namespace test {
 
 /// Publishes made-up recordings one behind the other, in a thread of its own, as a driver would:
 /// events, frames, exposures and calibrations whose times go on from one to the next.
-class MadeUpCamera {
+class StubCamera {
  public:
   /// \param ns namespace of the topics
   /// \param settings of the first recording; `frames` is the length of each
   /// \param haste how much faster than the clock on the wall recording time passes
-  MadeUpCamera(const std::string& ns, RecordingSettings settings, int haste);
-  ~MadeUpCamera();
-  MadeUpCamera(const MadeUpCamera&) = delete;
-  MadeUpCamera& operator=(const MadeUpCamera&) = delete;
+  StubCamera(const std::string& ns, RecordingSettings settings, int haste);
+  ~StubCamera();
+  StubCamera(const StubCamera&) = delete;
+  StubCamera& operator=(const StubCamera&) = delete;
 
  private:
   void run(RecordingSettings settings, int haste);

@@ -1,4 +1,4 @@
-#include "rostest/made_up_camera.hpp"
+#include "rostest/stub_camera.hpp"
 
 #include <chrono>
 
@@ -10,7 +10,7 @@ constexpr std::uint32_t kQueue = 1000;
 
 }  // namespace
 
-MadeUpCamera::MadeUpCamera(const std::string& ns, RecordingSettings settings, int haste)
+StubCamera::StubCamera(const std::string& ns, RecordingSettings settings, int haste)
     : nh_(ns),
       events_(nh_.advertise<EventArray>("events", kQueue)),
       image_(nh_.advertise<sensor_msgs::Image>("image_raw", kQueue)),
@@ -18,12 +18,12 @@ MadeUpCamera::MadeUpCamera(const std::string& ns, RecordingSettings settings, in
       camera_info_(nh_.advertise<sensor_msgs::CameraInfo>("camera_info", kQueue)),
       thread_([this, settings, haste] { run(settings, haste); }) {}
 
-MadeUpCamera::~MadeUpCamera() {
+StubCamera::~StubCamera() {
   stop_ = true;
   thread_.join();
 }
 
-void MadeUpCamera::run(RecordingSettings settings, int haste) {
+void StubCamera::run(RecordingSettings settings, int haste) {
   const std::int64_t first_ns = settings.start_ns;
   const auto start = std::chrono::steady_clock::now();
   while (!stop_) {
@@ -41,7 +41,7 @@ void MadeUpCamera::run(RecordingSettings settings, int haste) {
   }
 }
 
-void MadeUpCamera::publish(const Arrival& arrival) {
+void StubCamera::publish(const Arrival& arrival) {
   if (arrival.events) {
     events_.publish(arrival.events);
   } else if (arrival.image) {

@@ -1,4 +1,4 @@
-#include "node/side_thread.hpp"
+#include "node/callback_thread.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -60,16 +60,16 @@ bool waitFor(const Calls& calls, int count) {
   return calls.count == count;
 }
 
-class SideThreadTest : public ::testing::Test {
+class CallbackThreadTest : public ::testing::Test {
  protected:
-  SideThreadTest() : queue_(thread_.queue()) {}
+  CallbackThreadTest() : queue_(thread_.queue()) {}
 
-  SideThread thread_;
+  CallbackThread thread_;
   ros::CallbackQueueInterface& queue_;
   Calls calls_;
 };
 
-TEST_F(SideThreadTest, CallsInAThreadOfItsOwnOnceStarted) {
+TEST_F(CallbackThreadTest, CallsInAThreadOfItsOwnOnceStarted) {
   queue_.addCallback(boost::make_shared<Call>(calls_), 1);
   EXPECT_EQ(calls_.count, 0);
   thread_.start();
@@ -79,7 +79,7 @@ TEST_F(SideThreadTest, CallsInAThreadOfItsOwnOnceStarted) {
   EXPECT_TRUE(waitFor(calls_, 2));
 }
 
-TEST_F(SideThreadTest, CallsWhatIsPostedInOrder) {
+TEST_F(CallbackThreadTest, CallsWhatIsPostedInOrder) {
   std::vector<int> called;
   std::promise<void> done;
   for (const int i : {1, 2, 3}) {
@@ -93,7 +93,7 @@ TEST_F(SideThreadTest, CallsWhatIsPostedInOrder) {
   EXPECT_THAT(called, ::testing::ElementsAre(1, 2, 3));
 }
 
-TEST_F(SideThreadTest, StoppingWaitsForTheCallbackAtWork) {
+TEST_F(CallbackThreadTest, StoppingWaitsForTheCallbackAtWork) {
   std::promise<void> begun;
   std::promise<void> end;
   std::atomic<bool> ended{false};
@@ -108,7 +108,7 @@ TEST_F(SideThreadTest, StoppingWaitsForTheCallbackAtWork) {
   stopper.join();
 }
 
-TEST_F(SideThreadTest, NothingIsCalledAfterStopping) {
+TEST_F(CallbackThreadTest, NothingIsCalledAfterStopping) {
   thread_.start();
   thread_.stop();
   queue_.addCallback(boost::make_shared<Call>(calls_), 1);
@@ -116,7 +116,7 @@ TEST_F(SideThreadTest, NothingIsCalledAfterStopping) {
   EXPECT_EQ(calls_.count, 0);
 }
 
-TEST_F(SideThreadTest, WhatIsQueuedWhenItStopsIsNeverCalled) {
+TEST_F(CallbackThreadTest, WhatIsQueuedWhenItStopsIsNeverCalled) {
   std::promise<void> begun;
   std::promise<void> end;
   std::atomic<bool> ended{false};

@@ -1,4 +1,4 @@
-#include "node/side_thread.hpp"
+#include "node/callback_thread.hpp"
 
 #include <utility>
 
@@ -24,17 +24,17 @@ class Work : public ros::CallbackInterface {
 
 }  // namespace
 
-ros::NodeHandle SideThread::handle(const ros::NodeHandle& nh) {
+ros::NodeHandle CallbackThread::handle(const ros::NodeHandle& nh) {
   ros::NodeHandle own(nh);
   own.setCallbackQueue(&queue_);
   return own;
 }
 
-void SideThread::post(std::function<void()> work) {
+void CallbackThread::post(std::function<void()> work) {
   queue_.addCallback(boost::make_shared<Work>(std::move(work)));
 }
 
-void SideThread::start() {
+void CallbackThread::start() {
   thread_ = std::thread([this] {
     while (!stopped_) {
       queue_.callOne(kLongestWait);
@@ -42,7 +42,7 @@ void SideThread::start() {
   });
 }
 
-void SideThread::stop() {
+void CallbackThread::stop() {
   stopped_ = true;
   if (thread_.joinable()) {
     thread_.join();
