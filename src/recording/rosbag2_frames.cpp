@@ -13,7 +13,7 @@ std::string Rosbag2Frames::add(std::size_t source, std::int64_t stamp_ns, const 
                                std::optional<RecordedFrame>& complete) {
   Frame frame;
   std::swap(frame.pixels, spare_pixels_);
-  const std::string fault = packImage(image, frame.pixels);
+  std::string fault = packImage(image, frame.pixels);
   if (!fault.empty()) {
     return fault;
   }
