@@ -10,12 +10,12 @@ reader = dv.io.MonoCameraRecording(sys.argv[1])
 deblurrer = fast_edi.Deblurrer(reader.getEventResolution(), stamp_reference="start",
                                contrast_threshold_on=0.26, contrast_threshold_off=0.24)
 images = []
-while reader.isRunning():
-    events, frame = reader.getNextEventBatch(), reader.getNextFrame()
-    if frame is not None:
+frame = reader.getNextFrame()
+while (events := reader.getNextEventBatch()) is not None:
+    deblurrer.add_events(events.numpy())
+    while frame is not None and frame.timestamp <= events.getHighestTime():
         deblurrer.add_frame(frame.image, frame.timestamp, frame.exposure // numpy.timedelta64(1, "us"))
-    if events is not None:
-        deblurrer.add_events(events.numpy())
+        frame = reader.getNextFrame()
     images += [result.image for result in deblurrer.results()]
 deblurrer.finish()
 images += [result.image for result in deblurrer.results()]
