@@ -1,4 +1,4 @@
-// Times between events, and pixels that never rest.
+// Polarities, times between events, and pixels that never rest.
 #include "survey/event_statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -15,20 +15,6 @@ std::size_t binOf(std::int64_t time_ns) {
     ++bin;
   }
   return bin;
-}
-
-TEST(TimeHistogramTest, OctavesHaveEightBins) {
-  TimeHistogram histogram;
-  EXPECT_DOUBLE_EQ(TimeHistogram::binStartNs(0), 1e3);
-  EXPECT_DOUBLE_EQ(TimeHistogram::binStartNs(80), 1024e3);
-  histogram.add(1'024'001);
-  histogram.add(0);                // below: the first bin
-  histogram.add(1'000'000 * kMs);  // beyond: the last bin
-  EXPECT_EQ(histogram[80], 1U);
-  EXPECT_EQ(histogram[0], 1U);
-  EXPECT_EQ(histogram[TimeHistogram::kBins - 1], 1U);
-  EXPECT_EQ(histogram.sum(0, 81), 2U);
-  EXPECT_EQ(histogram.total(), 3U);
 }
 
 TEST(EventStatisticsTest, MeasuresTimesToPixelAndNeighbours) {
