@@ -10,20 +10,17 @@
 #include <string>
 #include <vector>
 
-#include <diagnostic_updater/diagnostic_updater.h>
-#include <image_transport/image_transport.h>
 #include <ros/node_handle.h>
 #include <ros/steady_timer.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 
 #include "fast_edi/config/tag_detector_parameters.hpp"
-#include "fast_edi/events/sequence_gaps.hpp"
 #include "fast_edi/tags/tag_detector.hpp"
 #include "node/callback_thread.hpp"
-#include "node/latency_record.hpp"
-#include "node/throttled_warnings.hpp"
-#include "tag_node/tag_diagnostics.hpp"
+#include "tag_node/tag_inputs.hpp"
+#include "tag_node/tag_outputs.hpp"
+#include "tag_node/tag_report.hpp"
 
 namespace fast_edi {
 
@@ -41,19 +38,12 @@ class TagDetectorNode {
   TagDetectorNode& operator=(const TagDetectorNode&) = delete;
 
   /// Empty unless the configuration was refused.
-  const std::string& configurationError() const { return configuration_error_; }
+  const std::string& configurationError() const { return report_.totals().configuration_error; }
 
  private:
-  /// Input subscriptions, which come and go together.
-  struct Inputs {
-    image_transport::Subscriber image;
-    ros::Subscriber camera_info;
-  };
-
-  void configure();
-  void advertise();
+  void configure(const std::string& name);
   void subscribersChanged();
-  std::unique_ptr<Inputs> subscribe();
+  std::unique_ptr<TagInputs> subscribe();
 
   void receiveImage(const sensor_msgs::ImageConstPtr& message);
   void receiveCameraInfo(const sensor_msgs::CameraInfoConstPtr& message);
@@ -66,27 +56,17 @@ class TagDetectorNode {
 
   ros::NodeHandle nh_;
   ros::NodeHandle private_nh_;
-  std::string name_;
-  std::string image_topic_;
-  std::string configuration_error_;
   TagDetectorParameters parameters_;
   CallbackThread callback_thread_;  ///< for subscribers that come and go; outlives the publishers
 
   std::mutex mutex_;
+  TagReport report_;
   std::optional<TagDetector> detector_;  ///< empty when idle for good
   sensor_msgs::CameraInfoConstPtr camera_info_;
-  SequenceGaps gaps_;
-  LatencyRecord detection_time_;
-  TagDiagnostics diagnostics_;
-  TagSnapshot snapshot_;
-  ThrottledWarnings warnings_;
+  TagOutputs outputs_;
   std::int64_t callback_start_ns_ = 0;
-
-  ros::Publisher detections_publisher_;
-  image_transport::Publisher annotated_publisher_;
-  std::optional<diagnostic_updater::Updater> updater_;
   ros::SteadyTimer report_timer_;
-  std::unique_ptr<Inputs> inputs_;  ///< null while nobody listens
+  std::unique_ptr<TagInputs> inputs_;  ///< null while nobody listens
 };
 
 }  // namespace fast_edi
