@@ -44,6 +44,7 @@ constexpr std::size_t kSheetRows = 4;
 /// A frame is settled once this many more have come: by then its output and truth are there too.
 constexpr std::size_t kSettleAfterFrames = 16;
 constexpr double kNanosecondsInMillisecond = 1e6;
+constexpr double kNanosecondsInSecond = 1e9;
 constexpr int kNameWidth = 28;
 constexpr double kNoticeableGain = 1.25;
 constexpr char kDiagnosticsTopic[] = "/diagnostics";
@@ -85,6 +86,13 @@ struct ViewTotals {
       psnr_db += *view.psnr_db;
     }
   }
+};
+
+/// A frame in all its views; the truth is empty where it is not known.
+struct FrameViews {
+  View before;
+  View after;
+  View truth;
 };
 
 struct PendingFrame {
@@ -164,28 +172,237 @@ class LiveRecording {
   std::size_t image_count_ = 0;
 };
 
-/// Collects frames, figures and the rows of the sheet from a recording.
+/// The events of the recording: their span, and those of an exposure as a picture.
+class RecordedEvents {
+ public:
+  explicit RecordedEvents(const DeblurParameters& parameters)
+      : mapping_(parameters.event_mapping), time_offset_ns_(parameters.time_offset_ns) {}
+
+  void add(const BagMessage& message) {
+    const auto array = deserialise<EventArrayView>(message);
+    const WireEvents events = array->events();
+    view_.addEvents(events, sensorSize(*array), mapping_);
+    if (events.empty()) {
+      return;
+    }
+    first_ns_ = first_ns_.value_or(decodeWireEvent(events.record(0)).t_ns);
+    last_ns_ = decodeWireEvent(events.record(events.count - 1)).t_ns;
+  }
+
+  double spanSeconds() const {
+    return first_ns_ ? static_cast<double>(last_ns_ - *first_ns_) / kNanosecondsInSecond : 0.0;
+  }
+
+  /// Empty for a frame whose exposure is not known.
+  cv::Mat draw(const BagPipeline::Output& output) const {
+    if (!output.frame.input.supported || output.frame.exposure.length() == 0) {
+      return {};
+    }
+    const ExposureInterval window{output.frame.exposure.start_ns + time_offset_ns_,
+                                  output.frame.exposure.end_ns + time_offset_ns_};
+    const sensor_msgs::Image& input = *messageFrame(output.frame.input).message;
+    const cv::Mat panels =
+        cv_bridge::toCvCopy(view_.draw(input, *output.image, window), "bgr8")->image;
+    const int width = panels.cols / 3;
+    return panels.colRange(width, 2 * width).clone();
+  }
+
+ private:
+  ComparisonView view_;
+  const EventMapping mapping_;
+  const std::int64_t time_offset_ns_;
+  std::optional<std::int64_t> first_ns_;
+  std::int64_t last_ns_ = 0;
+};
+
+/// The true sharp frames, until they are discarded.
+class TrueFrames {
+ public:
+  void add(const BagMessage& message) {
+    const auto image = deserialise<sensor_msgs::Image>(message);
+    images_[image->header.stamp] = image;
+  }
+  /// Empty if there is none; may share the memory of the message.
+  cv::Mat at(const ros::Time& stamp) const {
+    const auto found = images_.find(stamp);
+    return found == images_.end() ? cv::Mat() : greyPixels(*found->second);
+  }
+  /// Discards this one and those before.
+  void discardUntil(const ros::Time& stamp) {
+    images_.erase(images_.begin(), images_.upper_bound(stamp));
+  }
+
+ private:
+  std::map<ros::Time, sensor_msgs::ImageConstPtr> images_;
+};
+
+/// Name, before, after, truth.
+void printLine(std::ostream& out, const std::string& name, const std::string& before,
+               const std::string& after, const std::string& truth) {
+  constexpr int kColumnWidth = 12;
+  out << std::left << std::setw(kNameWidth) << name << std::right << std::setw(kColumnWidth)
+      << before << std::setw(kColumnWidth) << after << std::setw(kColumnWidth) << truth << "\n";
+}
+
+std::string meanText(double sum, std::size_t count, int digits) {
+  return count == 0 ? "-" : text(sum / static_cast<double>(count), digits);
+}
+
+/// Image quality of the frames before and after, and of the truth.
+class QualityTable {
+ public:
+  /// Measures the views of a frame and counts them. They share the memory of the pictures.
+  /// \param truth empty if it is not known
+  FrameViews add(const cv::Mat& before, const cv::Mat& after, const cv::Mat& truth) {
+    FrameViews views;
+    views.before = measure(before, truth);
+    views.after = measure(after, truth);
+    before_.add(views.before);
+    after_.add(views.after);
+    if (!truth.empty()) {
+      views.truth = measure(truth, {});
+      true_.add(views.truth);
+    }
+    return views;
+  }
+
+  bool hasTruth() const { return true_.frames > 0; }
+
+  void print(std::ostream& out) const {
+    const bool truth = hasTruth();
+    printLine(out, "", "blurry", "deblurred", truth ? "truth" : "");
+    printLine(out, "sharpness [DN^2/px^2]", meanText(before_.sharpness, before_.frames, 1),
+              meanText(after_.sharpness, after_.frames, 1),
+              truth ? meanText(true_.sharpness, true_.frames, 1) : "");
+    printLine(out, "AprilTags found (36h11)", std::to_string(before_.tags),
+              std::to_string(after_.tags), truth ? std::to_string(true_.tags) : "");
+    if (truth) {
+      printLine(out, "PSNR [dB]", meanText(before_.psnr_db, before_.frames_with_psnr, 2),
+                meanText(after_.psnr_db, after_.frames_with_psnr, 2), "");
+    }
+  }
+
+ private:
+  View measure(const cv::Mat& mono8, const cv::Mat& truth) const {
+    View view;
+    view.mono8 = mono8;
+    view.sharpness = sharpness(mono8).tenengrad_above_noise;
+    view.tags = detector_.detect(mono8).size();
+    if (!truth.empty() && truth.size() == mono8.size()) {
+      view.psnr_db = psnr(mono8, truth);
+    }
+    return view;
+  }
+
+  TagDetector detector_;
+  ViewTotals before_;
+  ViewTotals after_;
+  ViewTotals true_;
+};
+
+std::string caption(const View& view) {
+  std::string words = "sharpness " + text(view.sharpness, 1);
+  if (view.tags > 0) {
+    words += ", " + std::to_string(view.tags) + (view.tags == 1 ? " tag" : " tags");
+  }
+  if (view.psnr_db) {
+    words += ", " + text(*view.psnr_db, 1) + " dB";
+  }
+  return words;
+}
+
+/// The picture: a row for each of some frames, from the middles of equal parts of the recording.
+class FrameSheet {
+ public:
+  /// \param frames_expected in the recording
+  explicit FrameSheet(std::uint64_t frames_expected) : frames_expected_(frames_expected) {}
+
+  /// Whether a frame goes on the sheet; to be asked once for each, in order.
+  bool choose(std::size_t number) {
+    const std::uint64_t first = (2 * rows_chosen_ + 1) * frames_expected_ / (2 * kSheetRows);
+    const bool chosen = rows_chosen_ < kSheetRows && number >= first;
+    rows_chosen_ += chosen ? 1 : 0;
+    return chosen;
+  }
+  void add(const PendingFrame& frame, const FrameViews& views);
+  cv::Mat draw(const std::string& title, bool with_truth) const;
+
+ private:
+  const std::uint64_t frames_expected_;
+  std::size_t rows_chosen_ = 0;
+  std::vector<SheetRow> rows_;
+  double gain_ = kMaxDisplayGain;
+};
+
+void FrameSheet::add(const PendingFrame& frame, const FrameViews& views) {
+  const OutputFrame& output = frame.offline.frame;
+  SheetRow row;
+  row.label = "frame " + std::to_string(frame.number + 1) + ": ";
+  if (output.deblurred) {
+    row.label += "exposure " + text(milliseconds(output.exposure.length()), 1) + " ms, " +
+                 std::to_string(output.events) + " events";
+  } else {
+    row.label += std::string("passed through, ") + toString(output.pass_reason);
+  }
+  // Copies: the frames share the memory of messages that will be gone.
+  row.panels = {views.before.mono8.clone(), frame.events, views.after.mono8.clone()};
+  row.captions = {caption(views.before), "", caption(views.after)};
+  if (!views.truth.mono8.empty()) {
+    row.panels.push_back(views.truth.mono8.clone());
+    row.captions.push_back(caption(views.truth));
+  }
+  gain_ = std::min(gain_, displayGain(views.before.mono8));
+  rows_.push_back(std::move(row));
+}
+
+cv::Mat FrameSheet::draw(const std::string& title, bool with_truth) const {
+  Sheet sheet;
+  sheet.title = title;
+  sheet.columns = {"blurry frame", "events (red ON, blue OFF)", "deblurred"};
+  if (with_truth) {
+    sheet.columns.push_back("truth");
+  }
+  sheet.rows = rows_;
+  if (gain_ > kNoticeableGain) {
+    sheet.title += "  (frames shown " + text(gain_, 1) + " times as bright)";
+    for (SheetRow& row : sheet.rows) {
+      for (cv::Mat& panel : row.panels) {
+        if (panel.channels() == 1) {
+          cv::Mat brighter;
+          panel.convertTo(brighter, CV_8U, gain_);
+          panel = brighter;
+        }
+      }
+    }
+  }
+  return drawSheet(sheet);
+}
+
+std::uint64_t messagesOn(const BagReader& reader, const std::string& topic) {
+  std::uint64_t messages = 0;
+  for (const auto& entry : reader.connections()) {
+    messages += entry.second.topic == topic ? entry.second.messages : 0;
+  }
+  return messages;
+}
+
+/// Brings together what belongs to one frame: as it was published live, as it comes out offline,
+/// its truth, its events.
 class Report {
  public:
   Report(const Arguments& arguments, const LoadedParameters& parameters, const BagReader& reader)
       : arguments_(arguments),
-        topics_(arguments.topics),
-        live_(arguments.live, topics_.outputImage()),
-        time_offset_ns_(parameters.deblur.time_offset_ns),
-        pipeline_(topics_, parameters),
-        event_mapping_(parameters.deblur.event_mapping) {
-    for (const auto& entry : reader.connections()) {
-      frames_expected_ += entry.second.topic == topics_.image ? entry.second.messages : 0;
-    }
-  }
+        live_(arguments.live, arguments.topics.outputImage()),
+        pipeline_(arguments.topics, parameters),
+        events_(parameters.deblur),
+        sheet_(messagesOn(reader, arguments.topics.image)) {}
 
   void add(const BagMessage& message) {
     const std::string& topic = message.connection->topic;
-    if (topic == topics_.events) {
-      addEvents(message);
+    if (topic == arguments_.topics.events) {
+      events_.add(message);
     } else if (topic == arguments_.truth) {
-      const auto image = deserialise<sensor_msgs::Image>(message);
-      truth_[image->header.stamp] = image;
+      truth_.add(message);
     }
     pipeline_.add(message);
     takeOutputs();
@@ -207,99 +424,39 @@ class Report {
   bool lostFrames() const { return frames_lost_ > 0; }
 
   void print(std::ostream& out) const;
-  cv::Mat draw() const;
+  cv::Mat draw() const { return sheet_.draw(arguments_.name, quality_.hasTruth()); }
 
  private:
   void printLatency(std::ostream& out, const std::string& name, const std::string& key,
                     const std::string& remark) const;
 
-  void addEvents(const BagMessage& message) {
-    const auto array = deserialise<EventArrayView>(message);
-    const WireEvents events = array->events();
-    view_.addEvents(events, sensorSize(*array), event_mapping_);
-    if (events.empty()) {
-      return;
-    }
-    first_event_ns_ = first_event_ns_.value_or(decodeWireEvent(events.record(0)).t_ns);
-    last_event_ns_ = decodeWireEvent(events.record(events.count - 1)).t_ns;
-  }
-
   void takeOutputs() {
     for (BagPipeline::Output& output : pipeline_.takeOutputs()) {
       PendingFrame frame;
       frame.number = frames_seen_++;
-      // Rows from the middles of equal parts of the recording.
-      const std::size_t row = rows_chosen_;
-      frame.on_sheet =
-          row < kSheetRows && frame.number >= (2 * row + 1) * frames_expected_ / (2 * kSheetRows);
+      frame.on_sheet = sheet_.choose(frame.number);
       if (frame.on_sheet) {
-        ++rows_chosen_;
-        frame.events = drawEvents(output);
+        frame.events = events_.draw(output);
       }
       frame.offline = std::move(output);
       pending_.push_back(std::move(frame));
     }
   }
 
-  cv::Mat drawEvents(const BagPipeline::Output& output) const {
-    if (!output.frame.input.supported || output.frame.exposure.length() == 0) {
-      return {};
-    }
-    const ExposureInterval window{output.frame.exposure.start_ns + time_offset_ns_,
-                                  output.frame.exposure.end_ns + time_offset_ns_};
-    const sensor_msgs::Image& input = *messageFrame(output.frame.input).message;
-    const cv::Mat panels =
-        cv_bridge::toCvCopy(view_.draw(input, *output.image, window), "bgr8")->image;
-    const int width = panels.cols / 3;
-    return panels.colRange(width, 2 * width).clone();
-  }
-
   void settleOldest();
-  View look(const cv::Mat& mono8, const cv::Mat& truth) const;
-  cv::Mat truthAt(const ros::Time& stamp) const;
-  void addRow(const PendingFrame& frame, const View& before, const View& after, const View& truth);
 
   const Arguments& arguments_;
-  const TopicNames& topics_;
   LiveRecording live_;
-  const std::int64_t time_offset_ns_;
   BagPipeline pipeline_;
-  ComparisonView view_;
-  EventMapping event_mapping_;
-  TagDetector detector_;
-
+  RecordedEvents events_;
+  TrueFrames truth_;
+  QualityTable quality_;
+  FrameSheet sheet_;
   std::deque<PendingFrame> pending_;
-  std::map<ros::Time, sensor_msgs::ImageConstPtr> truth_;
-
-  std::uint64_t frames_expected_ = 0;
   std::size_t frames_seen_ = 0;
   std::size_t frames_lost_ = 0;
   std::size_t frames_as_offline_ = 0;
-  std::size_t rows_chosen_ = 0;
-  std::optional<std::int64_t> first_event_ns_;
-  std::int64_t last_event_ns_ = 0;
-  ViewTotals before_;
-  ViewTotals after_;
-  ViewTotals true_;
-  std::vector<SheetRow> rows_;
-  double gain_ = kMaxDisplayGain;
 };
-
-View Report::look(const cv::Mat& mono8, const cv::Mat& truth) const {
-  View view;
-  view.mono8 = mono8;
-  view.sharpness = sharpness(mono8).tenengrad_above_noise;
-  view.tags = detector_.detect(mono8).size();
-  if (!truth.empty() && truth.size() == mono8.size()) {
-    view.psnr_db = psnr(mono8, truth);
-  }
-  return view;
-}
-
-cv::Mat Report::truthAt(const ros::Time& stamp) const {
-  const auto found = truth_.find(stamp);
-  return found == truth_.end() ? cv::Mat() : greyPixels(*found->second);
-}
 
 void Report::settleOldest() {
   const PendingFrame frame = std::move(pending_.front());
@@ -312,90 +469,14 @@ void Report::settleOldest() {
   } else {
     frames_as_offline_ += live->data == frame.offline.image->data ? 1 : 0;
     if (frame.offline.frame.input.supported) {
-      const cv::Mat truth = truthAt(stamp);
-      const View before = look(greyPixels(*input.message), truth);
-      const View after = look(greyPixels(*live), truth);
-      before_.add(before);
-      after_.add(after);
-      View true_view;
-      if (!truth.empty()) {
-        true_view = look(truth, {});
-        true_.add(true_view);
-      }
+      const cv::Mat truth = truth_.at(stamp);
+      const FrameViews views = quality_.add(greyPixels(*input.message), greyPixels(*live), truth);
       if (frame.on_sheet) {
-        addRow(frame, before, after, true_view);
+        sheet_.add(frame, views);
       }
     }
   }
-  truth_.erase(truth_.begin(), truth_.upper_bound(stamp));
-}
-
-std::string caption(const View& view) {
-  std::string words = "sharpness " + text(view.sharpness, 1);
-  if (view.tags > 0) {
-    words += ", " + std::to_string(view.tags) + (view.tags == 1 ? " tag" : " tags");
-  }
-  if (view.psnr_db) {
-    words += ", " + text(*view.psnr_db, 1) + " dB";
-  }
-  return words;
-}
-
-void Report::addRow(const PendingFrame& frame, const View& before, const View& after,
-                    const View& truth) {
-  const OutputFrame& output = frame.offline.frame;
-  SheetRow row;
-  row.label = "frame " + std::to_string(frame.number + 1) + ": ";
-  if (output.deblurred) {
-    row.label += "exposure " + text(milliseconds(output.exposure.length()), 1) + " ms, " +
-                 std::to_string(output.events) + " events";
-  } else {
-    row.label += std::string("passed through, ") + toString(output.pass_reason);
-  }
-  // Copies: the frames share the memory of messages that will be gone.
-  row.panels = {before.mono8.clone(), frame.events, after.mono8.clone()};
-  row.captions = {caption(before), "", caption(after)};
-  if (!truth.mono8.empty()) {
-    row.panels.push_back(truth.mono8.clone());
-    row.captions.push_back(caption(truth));
-  }
-  gain_ = std::min(gain_, displayGain(before.mono8));
-  rows_.push_back(std::move(row));
-}
-
-cv::Mat Report::draw() const {
-  Sheet sheet;
-  sheet.title = arguments_.name;
-  sheet.columns = {"blurry frame", "events (red ON, blue OFF)", "deblurred"};
-  if (true_.frames > 0) {
-    sheet.columns.push_back("truth");
-  }
-  sheet.rows = rows_;
-  if (gain_ > kNoticeableGain) {
-    sheet.title += "  (frames shown " + text(gain_, 1) + " times as bright)";
-    for (SheetRow& row : sheet.rows) {
-      for (cv::Mat& panel : row.panels) {
-        if (panel.channels() == 1) {
-          cv::Mat brighter;
-          panel.convertTo(brighter, CV_8U, gain_);
-          panel = brighter;
-        }
-      }
-    }
-  }
-  return drawSheet(sheet);
-}
-
-/// Name, before, after, truth.
-void printLine(std::ostream& out, const std::string& name, const std::string& before,
-               const std::string& after, const std::string& truth) {
-  constexpr int kColumnWidth = 12;
-  out << std::left << std::setw(kNameWidth) << name << std::right << std::setw(kColumnWidth)
-      << before << std::setw(kColumnWidth) << after << std::setw(kColumnWidth) << truth << "\n";
-}
-
-std::string meanText(double sum, std::size_t count, int digits) {
-  return count == 0 ? "-" : text(sum / static_cast<double>(count), digits);
+  truth_.discardUntil(stamp);
 }
 
 void Report::printLatency(std::ostream& out, const std::string& name, const std::string& key,
@@ -422,9 +503,8 @@ void Report::print(std::ostream& out) const {
   }
   out << "same bits as deblur_bag     " << frames_as_offline_ << " of " << live_.imageCount()
       << "\n";
-  const double span_s =
-      first_event_ns_ ? static_cast<double>(last_event_ns_ - *first_event_ns_) / 1e9 : 0.0;
   out << "events                      " << counters.events_in;
+  const double span_s = events_.spanSeconds();
   if (span_s > 0.0) {
     out << ", " << text(static_cast<double>(counters.events_in) / span_s / 1e6, 3) << " Mev/s";
   }
@@ -433,17 +513,7 @@ void Report::print(std::ostream& out) const {
                " (the wait for the exposure's last events included)");
   printLatency(out, "last message to output", "Close latency", "");
   out << "\n";
-  printLine(out, "", "blurry", "deblurred", true_.frames > 0 ? "truth" : "");
-  const bool truth = true_.frames > 0;
-  printLine(out, "sharpness [DN^2/px^2]", meanText(before_.sharpness, before_.frames, 1),
-            meanText(after_.sharpness, after_.frames, 1),
-            truth ? meanText(true_.sharpness, true_.frames, 1) : "");
-  printLine(out, "AprilTags found (36h11)", std::to_string(before_.tags),
-            std::to_string(after_.tags), truth ? std::to_string(true_.tags) : "");
-  if (truth) {
-    printLine(out, "PSNR [dB]", meanText(before_.psnr_db, before_.frames_with_psnr, 2),
-              meanText(after_.psnr_db, after_.frames_with_psnr, 2), "");
-  }
+  quality_.print(out);
 }
 
 /// \return false when help was asked for and given
