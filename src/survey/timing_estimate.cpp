@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "survey/finding.hpp"
 #include "survey/pair_consistency.hpp"
@@ -12,6 +13,7 @@
 namespace fast_edi {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMs = static_cast<double>(kNanosecondsPerMillisecond);
 /// Steps of the coarse search: this part of the exposure, within limits.
 constexpr double kCoarsePart = 0.25;
@@ -140,10 +142,111 @@ LocatedMinimum locate(const CostTable& table, const Finder& find = minimumPositi
   return located;
 }
 
+/// What guesses cost on the samples.
+class SampleCosts {
+ public:
+  /// Keeps references to both.
+  SampleCosts(const std::vector<TimingSample>& samples, PairConsistency& consistency)
+      : samples_(samples), consistency_(consistency) {}
+
+  /// Mean over the samples that cover the guess; infinite where fewer than half of them do.
+  double mean(const Guess& guess);
+  /// One row for each sample that covers all guesses.
+  CostTable table(const std::vector<Guess>& guesses);
+
+ private:
+  std::optional<std::vector<double>> row(const std::vector<Guess>& guesses,
+                                         const TimingSample& sample);
+
+  const std::vector<TimingSample>& samples_;
+  PairConsistency& consistency_;
+};
+
+double SampleCosts::mean(const Guess& guess) {
+  double sum = 0.0;
+  std::size_t covered = 0;
+  for (const TimingSample& sample : samples_) {
+    if (const auto measured = consistency_.measure(sample, guess.model, guess.thresholds)) {
+      sum += measured->cost;
+      ++covered;
+    }
+  }
+  if (2 * covered < samples_.size() || covered == 0) {
+    return kInfinity;
+  }
+  return sum / static_cast<double>(covered);
+}
+
+std::optional<std::vector<double>> SampleCosts::row(const std::vector<Guess>& guesses,
+                                                    const TimingSample& sample) {
+  std::vector<double> costs;
+  for (const Guess& guess : guesses) {
+    const auto measured = consistency_.measure(sample, guess.model, guess.thresholds);
+    if (!measured) {
+      return std::nullopt;
+    }
+    costs.push_back(measured->cost);
+  }
+  return costs;
+}
+
+CostTable SampleCosts::table(const std::vector<Guess>& guesses) {
+  CostTable rows;
+  for (const TimingSample& sample : samples_) {
+    if (auto costs = row(guesses, sample)) {
+      rows.push_back(std::move(*costs));
+    }
+  }
+  return rows;
+}
+
+/// One of the quantities that a search varies.
+struct Direction {
+  std::function<void(Guess&, double step)> move;
+  double step = 0.0;
+  double least = 0.0;  ///< step
+};
+
+/// Pattern search along each direction in turn, with steps that shrink.
+/// \return the cheapest guess found, at worst \p best itself
+Guess searchByPattern(Guess best, std::vector<Direction> directions, SampleCosts& costs) {
+  double best_cost = costs.mean(best);
+  constexpr int kMostRounds = 12;
+  for (int round = 0; round < kMostRounds; ++round) {
+    bool shrinking = false;
+    for (Direction& direction : directions) {
+      bool moved = false;
+      for (const double sign : {1.0, -1.0}) {
+        Guess trial = best;
+        direction.move(trial, sign * direction.step);
+        const double cost = isWithinBounds(trial.thresholds) ? costs.mean(trial) : kInfinity;
+        if (cost < best_cost) {
+          best = trial;
+          best_cost = cost;
+          moved = true;
+          break;
+        }
+      }
+      if (!moved && direction.step > direction.least) {
+        direction.step *= 0.5;
+      }
+      shrinking = shrinking || moved || direction.step > direction.least;
+    }
+    if (!shrinking) {
+      break;
+    }
+  }
+  return best;
+}
+
 class Estimator {
  public:
   Estimator(std::vector<TimingSample>& samples, const SampleGrid& grid, const TimingSearch& search)
-      : samples_(samples), grid_(grid), search_(search), consistency_(grid.size()) {}
+      : samples_(samples),
+        grid_(grid),
+        search_(search),
+        consistency_(grid.size()),
+        costs_(samples, consistency_) {}
 
   TimingEstimate run();
 
@@ -151,27 +254,22 @@ class Estimator {
   void readLengths();
   bool searchCoarsely();
   void selectPixels();
-  std::optional<double> cost(const Guess& guess);
   void descend(bool with_length);
   void chooseReference();
   void refineShift();
   std::vector<Guess> lengthsByScales() const;
   void checkLength();
   void checkThresholds();
-  std::optional<std::vector<double>> costsAlong(const std::vector<Guess>& guesses,
-                                                TimingSample& sample);
-  CostTable table(const std::vector<Guess>& guesses);
   void step(int done);
 
   std::vector<TimingSample>& samples_;
   const SampleGrid grid_;
   const TimingSearch& search_;
   PairConsistency consistency_;
+  SampleCosts costs_;
   Guess best_;
-  double best_cost_ = std::numeric_limits<double>::infinity();
   bool lengths_known_ = true;
   double length_variation_ = 0.0;
-  double gap_ns_ = 0.0;  ///< between frames, mean
   TimingEstimate result_;
 };
 
@@ -193,7 +291,6 @@ void Estimator::readLengths() {
     }
     gaps.push_back(static_cast<double>(sample.second.stamp_ns - sample.first.stamp_ns));
   }
-  gap_ns_ = mean(gaps);
   result_.length_ns = mean(lengths);
   if (lengths_known_) {
     double squares = 0.0;
@@ -203,7 +300,7 @@ void Estimator::readLengths() {
     length_variation_ =
         std::sqrt(squares / static_cast<double>(lengths.size())) / result_.length_ns;
   } else {
-    result_.length_ns = kGuessedDuty * gap_ns_;
+    result_.length_ns = kGuessedDuty * mean(gaps);
     best_.model.length_ns = result_.length_ns;
   }
 }
@@ -241,28 +338,8 @@ void Estimator::selectPixels() {
   }
 }
 
-std::optional<double> Estimator::cost(const Guess& guess) {
-  double sum = 0.0;
-  std::size_t covered = 0;
-  for (const TimingSample& sample : samples_) {
-    if (const auto measured = consistency_.measure(sample, guess.model, guess.thresholds)) {
-      sum += measured->cost;
-      ++covered;
-    }
-  }
-  if (2 * covered < samples_.size() || covered == 0) {
-    return std::nullopt;
-  }
-  return sum / static_cast<double>(covered);
-}
-
-/// Pattern search over shift, thresholds and length, each in turn with steps that shrink.
+/// To the least cost, in shift, thresholds and length.
 void Estimator::descend(bool with_length) {
-  struct Direction {
-    std::function<void(Guess&, double)> move;
-    double step;
-    double least;
-  };
   std::vector<Direction> directions = {
       {[](Guess& g, double s) { g.model.shift_ns += s; },
        std::max(kFinestCoarse_ns / 2, kCoarsePart / 2 * result_.length_ns), 0.1 * kMs},
@@ -272,57 +349,7 @@ void Estimator::descend(bool with_length) {
   if (with_length) {
     directions.push_back({[](Guess& g, double s) { g.model.length_ns *= std::exp(s); }, 0.4, 0.03});
   }
-  best_cost_ = cost(best_).value_or(std::numeric_limits<double>::infinity());
-  constexpr int kMostRounds = 12;
-  for (int round = 0; round < kMostRounds; ++round) {
-    bool shrinking = false;
-    for (Direction& direction : directions) {
-      bool moved = false;
-      for (const double sign : {1.0, -1.0}) {
-        Guess trial = best_;
-        direction.move(trial, sign * direction.step);
-        const std::optional<double> value =
-            isWithinBounds(trial.thresholds) ? cost(trial) : std::nullopt;
-        if (value && *value < best_cost_) {
-          best_ = trial;
-          best_cost_ = *value;
-          moved = true;
-          break;
-        }
-      }
-      if (!moved && direction.step > direction.least) {
-        direction.step *= 0.5;
-      }
-      shrinking = shrinking || moved || direction.step > direction.least;
-    }
-    if (!shrinking) {
-      break;
-    }
-  }
-}
-
-std::optional<std::vector<double>> Estimator::costsAlong(const std::vector<Guess>& guesses,
-                                                         TimingSample& sample) {
-  std::vector<double> costs;
-  for (const Guess& guess : guesses) {
-    const auto measured = consistency_.measure(sample, guess.model, guess.thresholds);
-    if (!measured) {
-      return std::nullopt;
-    }
-    costs.push_back(measured->cost);
-  }
-  return costs;
-}
-
-/// One row for each sample that covers all guesses.
-CostTable Estimator::table(const std::vector<Guess>& guesses) {
-  CostTable rows;
-  for (TimingSample& sample : samples_) {
-    if (auto row = costsAlong(guesses, sample)) {
-      rows.push_back(std::move(*row));
-    }
-  }
-  return rows;
+  best_ = searchByPattern(best_, std::move(directions), costs_);
 }
 
 /// What stamps mean and to which frame lengths belong, where lengths vary.
@@ -338,7 +365,6 @@ void Estimator::chooseReference() {
       best_.model.part = part;
       best_.model.shift_ns = start.model.shift_ns - part * result_.length_ns;
       best_.model.length_of_previous = late;
-      best_cost_ = std::numeric_limits<double>::infinity();
       constexpr int kSteps = 2;
       const double step_ns = 0.1 * result_.length_ns;
       std::vector<Guess> around;
@@ -346,7 +372,7 @@ void Estimator::chooseReference() {
         around.push_back(best_);
         around.back().model.shift_ns += i * step_ns;
       }
-      const CostTable costs = table(around);
+      const CostTable costs = costs_.table(around);
       if (costs.size() < 2) {
         continue;
       }
@@ -355,7 +381,7 @@ void Estimator::chooseReference() {
     }
   }
   best_ = start;
-  const CostTable costs = hypotheses.empty() ? CostTable{} : table(hypotheses);
+  const CostTable costs = hypotheses.empty() ? CostTable{} : costs_.table(hypotheses);
   if (costs.size() < 3) {
     return;
   }
@@ -385,7 +411,7 @@ void Estimator::refineShift() {
     guesses.push_back(best_);
     guesses.back().model.shift_ns += i * step_ns;
   }
-  const CostTable costs = table(guesses);
+  const CostTable costs = costs_.table(guesses);
   if (costs.size() < 2) {
     result_.reason = "fewer than two pairs of frames have all events around them";
     return;
@@ -419,7 +445,7 @@ std::vector<Guess> Estimator::lengthsByScales() const {
 
 /// The length that fits best, against the one known; or the uncertainty of the one found.
 void Estimator::checkLength() {
-  const CostTable costs = table(lengthsByScales());
+  const CostTable costs = costs_.table(lengthsByScales());
   if (costs.size() < 2) {
     return;
   }
@@ -450,7 +476,7 @@ void Estimator::checkThresholds() {
       guesses.push_back(best_);
       guesses.back().thresholds.*threshold *= std::exp(i * kScaleStep);
     }
-    const CostTable costs = table(guesses);
+    const CostTable costs = costs_.table(guesses);
     const double sigma = costs.size() < 2 ? 1.0 : locate(costs).sigma * kScaleStep;
     result_.threshold_sigmas.*threshold = std::hypot(sigma, kThresholdModelError);
   }
