@@ -1,7 +1,7 @@
 #include "pipeline/reconstruction.hpp"
 
 #include "fast_edi/base/stored_image.hpp"
-#include "fast_edi/events/exposure_events.hpp"
+#include "fast_edi/filters/exposure_events.hpp"
 
 namespace fast_edi {
 

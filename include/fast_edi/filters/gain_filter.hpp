@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "fast_edi/base/types.hpp"
-#include "fast_edi/events/exposure_events.hpp"
+#include "fast_edi/filters/exposure_events.hpp"
 #include "fast_edi/filters/hot_pixel_filter.hpp"
 #include "fast_edi/filters/non_local_means.hpp"
 

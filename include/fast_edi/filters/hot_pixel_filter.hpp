@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "fast_edi/base/types.hpp"
-#include "fast_edi/events/exposure_events.hpp"
+#include "fast_edi/filters/exposure_events.hpp"
 
 namespace fast_edi {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "fast_edi/base/image.hpp"
-#include "fast_edi/events/exposure_events.hpp"
+#include "fast_edi/filters/exposure_events.hpp"
 #include "fast_edi/filters/filter_parameters.hpp"
 #include "fast_edi/filters/frame_noise_estimate.hpp"
 #include "fast_edi/filters/frame_noise_filter.hpp"

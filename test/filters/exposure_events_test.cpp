@@ -1,4 +1,4 @@
-#include "fast_edi/events/exposure_events.hpp"
+#include "fast_edi/filters/exposure_events.hpp"
 
 #include <gtest/gtest.h>
 
