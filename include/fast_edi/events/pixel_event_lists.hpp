@@ -5,35 +5,24 @@
 /// as pairs <exp value, counter>, see list(). Any exposure window and any reference time can be
 /// asked for afterwards, since nothing about exposures is known when events come.
 ///
-/// Layout. The lists of all pixels are interleaved in one time-ordered log of 8-byte records
-/// {time since the chunk's base [ns], pixel index and polarity}, kept in chunks of
-/// kChunkEvents records. Appending is a sequential store; dropping what no later frame needs
-/// returns whole chunks to a free list.
+/// Layout. The lists of all pixels are interleaved in one time-ordered EventLog.
 ///
-/// Invariants
+/// Invariants beside those of EventLog
 /// - Times never decrease along the log (late events are refused and counted).
 /// - Every record's pixel lies on the sensor.
-/// - eventCount() <= max_events; when full, the oldest chunk goes and coverage moves up with it.
-/// - Sequence numbers count accepted events since construction and never repeat.
 ///
-/// Complexity. append O(1) per event, discardBefore O(chunks dropped), list() O(events in window).
+/// Complexity. append O(1) per event, list() O(events in window). Memory: that of EventLog.
 /// Wins where all pixels are integrated over the same window (every frame). Loses against lists
 /// that lie apart when only few pixels of a long window are asked for: list() scans the window.
-/// Memory: 8 B per buffered event (plus chunks that are not full or not in use), nothing per pixel;
-/// no allocation once the working set of chunks has been reached. Chunks that a burst took are
-/// given back within some dozens of discardBefore(), or by flush(); a few stay as a spare. With
-/// keepIntervals() 2 B more for each event and 4 B for each pixel, and about a nanosecond more for
-/// each event.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "fast_edi/base/contrast_threshold.hpp"
 #include "fast_edi/base/types.hpp"
-#include "fast_edi/events/event_intervals.hpp"
+#include "fast_edi/events/event_log.hpp"
 #include "fast_edi/events/event_wire.hpp"
 #include "fast_edi/events/packed_event.hpp"
 
@@ -64,7 +53,7 @@ struct AppendResult {
 
 class PixelEventLists {
  public:
-  static constexpr std::size_t kChunkEvents = 1u << 16;
+  static constexpr std::size_t kChunkEvents = EventLog::kChunkEvents;
 
   struct Limits {
     std::size_t max_events = 13'000'000;
@@ -84,7 +73,7 @@ class PixelEventLists {
   AppendResult append(const Event& event);
 
   /// Drops whole chunks that lie before \p t_ns entirely.
-  void discardBefore(std::int64_t t_ns);
+  void discardBefore(std::int64_t t_ns) { log_.discardBefore(t_ns); }
   /// Drops everything; the next event may have any time.
   void flush();
   /// Empties the container and changes the sensor's size or the limits. Keeps no intervals then, so
@@ -93,66 +82,48 @@ class PixelEventLists {
 
   /// Whether to keep each event's interval since the one before it in its pixel. Switched on, the
   /// events that are buffered get theirs, too; what came before these is not known.
-  void keepIntervals(bool keep);
-  bool keepsIntervals() const { return keeps_intervals_; }
+  void keepIntervals(bool keep) { log_.keepIntervals(keep); }
+  bool keepsIntervals() const { return log_.keepsIntervals(); }
 
   SensorSize size() const { return size_; }
-  std::size_t eventCount() const {
-    return static_cast<std::size_t>(end_sequence_ - begin_sequence_);
-  }
-  bool empty() const { return end_sequence_ == begin_sequence_; }
+  std::size_t eventCount() const { return log_.eventCount(); }
+  bool empty() const { return log_.empty(); }
   /// Sensor time of the newest event; meaningless while !hasNewest().
   std::int64_t newest() const { return newest_ns_; }
   /// True once an event was taken in since construction, flush() or reset().
   bool hasNewest() const { return has_newest_; }
   /// Every event from this time on that was ever taken in is still here. After an overflow or
   /// discardBefore() this moves up; INT64_MIN while nothing was dropped.
-  std::int64_t completeFrom() const { return complete_from_ns_; }
+  std::int64_t completeFrom() const { return log_.completeFrom(); }
   /// Events dropped because max_events was reached, since construction.
-  std::uint64_t overflowed() const { return overflowed_; }
+  std::uint64_t overflowed() const { return log_.overflowed(); }
   /// Bytes allocated for events and intervals, free chunks included.
-  std::size_t memoryBytes() const;
+  std::size_t memoryBytes() const { return log_.memoryBytes(); }
 
   /// Sequence numbers [beginSequence, endSequence) are buffered.
-  std::uint64_t beginSequence() const { return begin_sequence_; }
-  std::uint64_t endSequence() const { return end_sequence_; }
+  std::uint64_t beginSequence() const { return log_.beginSequence(); }
+  std::uint64_t endSequence() const { return log_.endSequence(); }
   /// Sequence number of the first buffered event with time >= t_ns (endSequence() if none).
-  std::uint64_t lowerBound(std::int64_t t_ns) const;
+  std::uint64_t lowerBound(std::int64_t t_ns) const { return log_.lowerBound(t_ns); }
   /// The longest contiguous span that starts at \p sequence and ends before \p end_sequence.
-  PackedEventSpan span(std::uint64_t sequence, std::uint64_t end_sequence) const;
+  PackedEventSpan span(std::uint64_t sequence, std::uint64_t end_sequence) const {
+    return log_.span(sequence, end_sequence);
+  }
 
   /// One pixel's list over [window.start, window.end) as <exp value, counter> pairs.
   std::vector<ListEntry> list(int x, int y, const ExposureInterval& window,
                               const ContrastThresholds& thresholds) const;
 
  private:
-  struct Chunk;
-
-  Chunk& chunkFor(std::int64_t t_ns);
-  void makeRoom(std::size_t events);
-  void dropFront();
-  void recycle(std::unique_ptr<Chunk> chunk);
-  void trim();
   std::size_t appendRegular(const WireEvents& events, AppendResult& result);
   AppendStop appendOne(const Event& event, AppendResult& result);
-  std::size_t chunkIndex(std::uint64_t sequence) const;
-  void measureIntervals(Chunk& chunk, std::size_t first, std::size_t count);
 
   SensorSize size_;
   Limits limits_;
-  std::size_t max_chunks_ = 0;
-  std::vector<std::unique_ptr<Chunk>> chunks_;  ///< oldest first, never empty ones
-  std::vector<std::unique_ptr<Chunk>> free_chunks_;
-  std::size_t working_set_ = 0;   ///< chunks that were in use at once lately
   std::size_t block_events_ = 0;  ///< records of the next block that is taken to be regular
-  std::uint64_t begin_sequence_ = 0;
-  std::uint64_t end_sequence_ = 0;
   std::int64_t newest_ns_ = 0;
-  std::int64_t complete_from_ns_ = INT64_MIN;
-  std::uint64_t overflowed_ = 0;
   bool has_newest_ = false;
-  bool keeps_intervals_ = false;
-  EventIntervals intervals_;
+  EventLog log_;
 };
 
 }  // namespace fast_edi
