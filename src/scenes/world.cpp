@@ -93,9 +93,10 @@ class RoomWorld : public World {
     double largest = 0.0;
     for (const cv::Point2d& pixel : pixels) {
       const Eigen::Vector3d point =
-          from.position + from.orientation * (room_.depthAt(from, pixel) * room_.rayOf(pixel));
+          from.position +
+          from.orientation * (room_.depthAt(from, pixel) * room_.camera().rayOf(pixel));
       const Eigen::Vector3d seen = to.orientation.conjugate() * (point - to.position);
-      largest = std::max(largest, cv::norm(room_.project(seen) - pixel));
+      largest = std::max(largest, cv::norm(room_.camera().project(seen) - pixel));
     }
     return largest;
   }
