@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "fast_edi/base/level_model.hpp"
-#include "fast_edi/events/pixel_event_lists.hpp"
 
 namespace fast_edi {
 namespace {
