@@ -1,7 +1,6 @@
 #include "fast_edi/recording/aedat3_reader.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +13,7 @@
 #include "fast_edi/recording/recording_error.hpp"
 #include "recording/damage_notes.hpp"
 #include "recording/davis_geometry.hpp"
+#include "recording/number_at.hpp"
 
 namespace fast_edi {
 namespace {
@@ -40,13 +40,6 @@ constexpr int kOverflowShift = 31;  ///< times have 31 bits
 constexpr std::int64_t kMaxOverflows = std::int64_t{1} << 21;
 constexpr double kGravity = 9.80665;
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
-
-template <typename Number>
-Number numberAt(const std::uint8_t* data) {
-  Number number;
-  std::memcpy(&number, data, sizeof(number));
-  return number;
-}
 
 struct PacketHeader {
   std::int16_t kind = 0;
