@@ -1,0 +1,173 @@
+#include "recording/aedat4_packet_decoder.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "recording/aedat4_header.hpp"
+#include "recording/aedat4_stamp.hpp"
+#include "recording/damage_notes.hpp"
+#include "recording/number_at.hpp"
+
+namespace fast_edi {
+namespace {
+
+constexpr double kGravity = 9.80665;  ///< m/s^2
+constexpr double kRadiansPerDegree = 0.017453292519943295;
+
+// Fields of a packet of events, IMU samples or triggers; an event is a struct.
+constexpr int kElements = 0;
+constexpr std::size_t kEventBytes = 16;
+constexpr std::size_t kEventX = 8;
+constexpr std::size_t kEventY = 10;
+constexpr std::size_t kEventOn = 12;
+
+// Fields of an IMU sample: time, temperature, then both vectors.
+constexpr int kSampleTime = 0;
+constexpr int kSampleAcceleration = 2;
+constexpr int kSampleAngularVelocity = 5;
+constexpr int kTriggerTime = 0;
+constexpr int kTriggerType = 1;
+
+constexpr int kMaxSide_px = std::numeric_limits<std::int16_t>::max();
+
+}  // namespace
+
+void Aedat4PacketDecoder::note(const std::string& what) {
+  noteDamage(damage_, {packet_offset_, what});
+}
+
+void Aedat4PacketDecoder::open(FlatBytes bytes, std::size_t stream, std::uint64_t offset) {
+  table_.reset();
+  elements_ = {};
+  done_ = 0;
+  stream_ = stream;
+  packet_offset_ = offset;
+  const char* identifier = kAedat4Events;
+  switch (streams_[stream].kind) {
+    case StreamKind::kFrames:
+      identifier = kAedat4Frames;
+      break;
+    case StreamKind::kImu:
+      identifier = kAedat4Imu;
+      break;
+    case StreamKind::kTriggers:
+      identifier = kAedat4Triggers;
+      break;
+    case StreamKind::kEvents:
+    case StreamKind::kCalibration:
+      break;
+  }
+  table_ = FlatTable::root(bytes, identifier);
+  if (!table_) {
+    note(std::string("expected a packet with the identifier ") + identifier);
+    return;
+  }
+  const bool frame = streams_[stream].kind == StreamKind::kFrames;
+  const bool events = streams_[stream].kind == StreamKind::kEvents;
+  elements_ = frame ? FlatVector{nullptr, 1, true}
+                    : table_->vector(kElements, events ? kEventBytes : sizeof(std::uint32_t));
+  if (!elements_.complete) {
+    note("a packet that is shorter than it says: " + std::to_string(elements_.count) +
+         " elements are there");
+  }
+}
+
+bool Aedat4PacketDecoder::give(RecordingItem& item, std::int64_t record_ns) {
+  record_ns_ = std::max(record_ns_, record_ns);
+  item.stream = stream_;
+  item.record_ns = record_ns_;
+  return true;
+}
+
+bool Aedat4PacketDecoder::giveEvents(RecordingItem& item) {
+  while (table_ && streams_[stream_].kind == StreamKind::kEvents && done_ < elements_.count) {
+    if (giveSomeEvents(item)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool Aedat4PacketDecoder::giveSomeEvents(RecordingItem& item) {
+  const std::size_t end = std::min(elements_.count, done_ + kMaxItemEvents);
+  events_.resize(end - done_);
+  std::size_t count = 0;
+  std::size_t untold = 0;
+  for (; done_ < end; ++done_) {
+    const std::uint8_t* element = elements_.data + done_ * kEventBytes;
+    const std::optional<std::int64_t> t_ns = aedat4Stamp(numberAt<std::int64_t>(element));
+    if (!t_ns) {
+      ++untold;
+      continue;
+    }
+    // Negative coordinates become ones beyond any sensor, which the pipeline drops and counts.
+    events_[count++] = {numberAt<std::uint16_t>(element + kEventX),
+                        numberAt<std::uint16_t>(element + kEventY), *t_ns, element[kEventOn] != 0};
+  }
+  if (untold > 0) {
+    note(std::to_string(untold) + " events with times before 1970 or after 2106");
+  }
+  if (count == 0) {
+    return false;
+  }
+  item.content = RecordedEvents{events_.data(), count};
+  return give(item, events_[count - 1].t_ns);
+}
+
+bool Aedat4PacketDecoder::giveOther(RecordingItem& item) {
+  while (table_ && streams_[stream_].kind != StreamKind::kEvents && done_ < elements_.count) {
+    const std::size_t index = done_++;
+    const StreamKind kind = streams_[stream_].kind;
+    if (kind == StreamKind::kFrames ? giveFrame(item) : giveElement(item, kind, index)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool Aedat4PacketDecoder::giveElement(RecordingItem& item, StreamKind kind, std::size_t index) {
+  const std::optional<FlatTable> element = table_->element(kElements, index);
+  const std::optional<std::int64_t> t_ns =
+      element ? aedat4Stamp(element->number<std::int64_t>(kSampleTime, 0)) : std::nullopt;
+  if (!t_ns) {
+    note("element " + std::to_string(index) + " of a packet is damaged");
+    return false;
+  }
+  if (kind == StreamKind::kTriggers) {
+    static_assert(kTriggerTime == kSampleTime, "both are read above");
+    item.content = RecordedTrigger{*t_ns, element->number<std::int8_t>(kTriggerType, 0)};
+    return give(item, *t_ns);
+  }
+  RecordedImu sample;
+  sample.t_ns = *t_ns;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    sample.acceleration[i] =
+        kGravity * static_cast<double>(element->number<float>(kSampleAcceleration + axis, 0.0F));
+    sample.angular_velocity[i] = kRadiansPerDegree * static_cast<double>(element->number<float>(
+                                                         kSampleAngularVelocity + axis, 0.0F));
+  }
+  item.content = sample;
+  return give(item, *t_ns);
+}
+
+bool Aedat4PacketDecoder::giveFrame(RecordingItem& item) {
+  RecordedFrame frame;
+  const std::string fault = frame_decoder_.decode(*table_, sensorOf(streams_[stream_]), frame);
+  if (!fault.empty()) {
+    note("a frame " + fault + ": left out");
+    return false;
+  }
+  item.content = frame;
+  return give(item, frame.exposure ? frame.exposure->end_ns : frame.stamp_ns);
+}
+
+SensorSize Aedat4PacketDecoder::sensorOf(const RecordedStream& frames) const {
+  const auto events = std::find_if(streams_.begin(), streams_.end(), [&](const auto& stream) {
+    return stream.kind == StreamKind::kEvents && stream.camera == frames.camera;
+  });
+  const SensorSize size = events != streams_.end() ? events->size : frames.size;
+  return size.width <= kMaxSide_px && size.height <= kMaxSide_px ? size : SensorSize{};
+}
+
+}  // namespace fast_edi
