@@ -11,6 +11,8 @@
 #include "fast_edi/exposure/stamp_limits.hpp"
 #include "fast_edi/recording/byte_source.hpp"
 #include "fast_edi/recording/recording_error.hpp"
+#include "recording/aedat2_clock.hpp"
+#include "recording/aedat2_imu.hpp"
 #include "recording/aps_frame.hpp"
 #include "recording/damage_notes.hpp"
 #include "recording/davis_geometry.hpp"
@@ -22,7 +24,6 @@ constexpr std::size_t kRecordBytes = 8;
 constexpr std::size_t kBlockBytes = std::size_t{1} << 18;  ///< of whole records
 constexpr std::int64_t kMaxItem_us = 10'000;               ///< an item spans no more
 constexpr std::size_t kMaxHeaderBytes = std::size_t{4} << 20;
-constexpr std::int64_t kMaxWraps = 1000;  ///< of 71 minutes; more is damage
 
 // Bits of an address.
 constexpr std::uint32_t kNoEvent = 1U << 31;
@@ -40,13 +41,6 @@ constexpr std::uint32_t kImuCodeMask = 7;
 constexpr int kImuDataShift = 12;
 
 enum class Read : std::uint32_t { kResetRead = 0, kSignalRead = 1, kImuNumber = 3 };
-/// Numbers of an IMU sample: acceleration, temperature, angular velocity.
-constexpr std::uint32_t kTemperature = 3;
-constexpr std::uint32_t kImuNumbers = 7;
-
-// jAER's setting of the cameras' IMU: 8 g and 500 deg/s of 16 bits.
-constexpr double kAccelerationScale = 9.80665 / 4096.0;                  ///< m/s^2
-constexpr double kAngularScale = 3.14159265358979323846 / 180.0 / 65.5;  ///< rad/s
 
 std::uint32_t bigEndian(const std::uint8_t* data) {
   return static_cast<std::uint32_t>(data[0]) << 24 | static_cast<std::uint32_t>(data[1]) << 16 |
@@ -70,7 +64,7 @@ class Aedat2Reader : public Recording {
     while (const std::uint8_t* record = nextRecord()) {
       const std::uint32_t address = bigEndian(record);
       const bool event = (address & kNoEvent) == 0;
-      const std::int64_t t_us = unwrapped(bigEndian(record + 4));
+      const std::int64_t t_us = clock_.unwrapped(bigEndian(record + 4));
       if (event) {
         if (!given_.empty() &&
             (given_.size() == kMaxItemEvents || t_us - given_.front().t_ns / 1000 >= kMaxItem_us ||
@@ -153,22 +147,8 @@ class Aedat2Reader : public Recording {
 
   void take() { offset_ += kRecordBytes; }
 
-  /// Times have 32 bits and wrap around every 71 minutes.
-  std::int64_t unwrapped(std::uint32_t t_us) const {
-    constexpr std::uint32_t kHalf = 1U << 31;
-    const bool wrapped = t_us < last_us_ && last_us_ - t_us > kHalf && high_us_ < kMaxWraps;
-    return ((high_us_ + (wrapped ? 1 : 0)) << 32) + t_us;
-  }
-
-  void advance(std::int64_t t_us) {
-    high_us_ = t_us >> 32;
-    last_us_ = static_cast<std::uint32_t>(t_us);
-    const std::int64_t t_ns = t_us * kNanosecondsPerMicrosecond;
-    record_ns_ = std::max(record_ns_, t_ns);
-  }
-
   void addEvent(std::uint32_t address, std::int64_t t_us) {
-    advance(t_us);
+    clock_.advance(t_us);
     if ((address & kExternal) != 0) {
       return;
     }
@@ -188,14 +168,14 @@ class Aedat2Reader : public Recording {
   bool completes(std::uint32_t address) const {
     const auto read = static_cast<Read>(address >> kReadShift & kReadMask);
     if (read == Read::kImuNumber) {
-      return (address >> kImuCodeShift & kImuCodeMask) + 1 == kImuNumbers;
+      return (address >> kImuCodeShift & kImuCodeMask) + 1 == Aedat2Imu::kNumbers;
     }
     return read == Read::kSignalRead && frame_->missesOneSignal();
   }
 
   /// \return whether \p item holds something
   bool addOther(std::uint32_t address, std::int64_t t_us, RecordingItem& item) {
-    advance(t_us);
+    clock_.advance(t_us);
     const std::int64_t t_ns = t_us * kNanosecondsPerMicrosecond;
     const auto read = static_cast<Read>(address >> kReadShift & kReadMask);
     if (read == Read::kImuNumber) {
@@ -220,27 +200,18 @@ class Aedat2Reader : public Recording {
 
   bool addImu(std::uint32_t address, std::int64_t t_ns, RecordingItem& item) {
     const std::uint32_t code = address >> kImuCodeShift & kImuCodeMask;
-    if (code >= kImuNumbers) {
+    if (code >= Aedat2Imu::kNumbers) {
       note(offset_, "number 7 of an IMU sample, expected 0 to 6");
       return false;
     }
     const auto number =
         static_cast<std::int16_t>(static_cast<std::uint16_t>(address >> kImuDataShift));
-    imu_complete_ = code == 0 || (imu_complete_ && code == imu_code_ + 1);
-    imu_code_ = code;
-    if (code < kTemperature) {
-      imu_.acceleration[code] = number * kAccelerationScale;
-    } else if (code > kTemperature) {
-      imu_.angular_velocity[code - kTemperature - 1] = number * kAngularScale;
-    }
-    if (code + 1 < kImuNumbers || !imu_complete_) {
+    if (!imu_.add(code, number, t_ns)) {
       return false;
     }
-    imu_complete_ = false;
-    imu_.t_ns = t_ns;
     item.stream = kDavisImu;
-    item.record_ns = record_ns_;
-    item.content = imu_;
+    item.record_ns = clock_.latest();
+    item.content = imu_.sample();
     return true;
   }
 
@@ -254,14 +225,14 @@ class Aedat2Reader : public Recording {
     frame.pixels = reinterpret_cast<const std::uint8_t*>(pixels.data());
     frame.bytes = pixels.size() * sizeof(pixels[0]);
     item.stream = kDavisFrames;
-    item.record_ns = record_ns_;
+    item.record_ns = clock_.latest();
     item.content = frame;
     return true;
   }
 
   bool giveEvents(RecordingItem& item) {
     item.stream = kDavisEvents;
-    item.record_ns = record_ns_;
+    item.record_ns = clock_.latest();
     item.content = RecordedEvents{given_.data(), given_.size()};
     return true;
   }
@@ -292,14 +263,10 @@ class Aedat2Reader : public Recording {
   std::vector<std::uint8_t> block_;
   std::uint64_t block_begin_ = 0;
   std::uint64_t block_end_ = 0;
-  std::int64_t high_us_ = 0;  ///< how often times have wrapped around
-  std::uint32_t last_us_ = 0;
-  std::int64_t record_ns_ = 0;
+  Aedat2Clock clock_;
   std::vector<Event> given_;
   std::optional<ApsFrame> frame_;
-  RecordedImu imu_;
-  std::uint32_t imu_code_ = 0;
-  bool imu_complete_ = false;  ///< no number before imu_code_ is missing
+  Aedat2Imu imu_;
   bool ended_ = false;
 };
 
