@@ -31,8 +31,9 @@ struct McapIndex {
 
 /// Goes over the records of a file, without what is in its chunks. Behind damage it goes on at the
 /// next chunk. Only where the file has no end, as that of an interrupted recorder, chunks are
-/// opened for their topics. \param begin offset of the first record \param topics takes those that
-/// are found
+/// opened for their topics.
+/// \param begin offset of the first record
+/// \param topics takes those that are found
 McapIndex readMcapIndex(const ByteSource& file, std::uint64_t begin, McapChunkReader& chunks,
                         McapTopics& topics);
 
