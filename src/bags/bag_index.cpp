@@ -48,6 +48,15 @@ class IndexBuilder {
   }
 
  private:
+  /// The chunk that was read last, and its index so far.
+  struct LastChunk {
+    bool open = false;        ///< its index records may still follow
+    bool index_whole = true;  ///< no damage since its data
+    bool cut = false;         ///< it ends early, and that was noted
+    std::vector<BagIndexEntry> entries;
+    std::vector<std::uint32_t> connections;  ///< of the entries
+  };
+
   void readVersion() {
     const std::size_t count = std::min<std::uint64_t>(file_.size(), kVersionLine.size());
     const std::uint8_t* bytes = file_.read(0, count, scratch_);
@@ -69,7 +78,7 @@ class IndexBuilder {
       if (!usable) {
         const bool cut = record.has_value();
         noteDamage(position, cut ? "a record is cut off" : "no record where one is expected");
-        index_whole_ = false;
+        last_chunk_.index_whole = false;
         const std::optional<std::uint64_t> next = findChunkRecord(file_, position + 1);
         if (!next) {
           break;
@@ -138,21 +147,21 @@ class IndexBuilder {
       next = findChunkRecord(file_, record.data_offset).value_or(file_.size());
       noteDamage(next, record.data_size == 0 ? "a chunk was never finished" : "a chunk is cut off");
       chunk.size = next - record.data_offset;
-      chunk_cut_ = true;
-      index_whole_ = false;
+      last_chunk_.cut = true;
+      last_chunk_.index_whole = false;
     }
     index_.chunks.push_back(std::move(chunk));
-    chunk_open_ = true;
+    last_chunk_.open = true;
     return next;
   }
 
   void takeIndex(const Record& record) {
     const std::uint8_t* data = file_.read(record.data_offset, record.data_size, data_scratch_);
     const std::uint32_t count = record.header.number<std::uint32_t>("count").value_or(0);
-    if (!chunk_open_ || data == nullptr ||
+    if (!last_chunk_.open || data == nullptr ||
         record.data_size != std::uint64_t{count} * kIndexEntryBytes) {
       noteDamage(record.data_offset, "an index record of wrong size");
-      index_whole_ = false;
+      last_chunk_.index_whole = false;
       return;
     }
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -160,8 +169,8 @@ class IndexBuilder {
       std::uint32_t offset = 0;
       std::memcpy(&time, data + i * kIndexEntryBytes, sizeof(time));
       std::memcpy(&offset, data + i * kIndexEntryBytes + sizeof(time), sizeof(offset));
-      chunk_entries_.push_back({timeKey(time), offset, currentChunk()});
-      chunk_entry_connections_.push_back(record.header.number<std::uint32_t>("conn").value_or(0));
+      last_chunk_.entries.push_back({timeKey(time), offset, currentChunk()});
+      last_chunk_.connections.push_back(record.header.number<std::uint32_t>("conn").value_or(0));
     }
   }
 
@@ -171,33 +180,33 @@ class IndexBuilder {
 
   /// The records that belong to the open chunk are over.
   void endChunk() {
-    if (!chunk_open_) {
+    if (!last_chunk_.open) {
       return;
     }
-    chunk_open_ = false;
-    if (index_whole_ && !chunk_entries_.empty()) {
+    last_chunk_.open = false;
+    if (last_chunk_.index_whole && !last_chunk_.entries.empty()) {
       takeChunkIndex();
     } else {
       scanChunk(currentChunk(), true);
     }
-    chunk_entries_.clear();
-    chunk_entry_connections_.clear();
-    index_whole_ = true;
-    chunk_cut_ = false;
+    last_chunk_.entries.clear();
+    last_chunk_.connections.clear();
+    last_chunk_.index_whole = true;
+    last_chunk_.cut = false;
   }
 
   void takeChunkIndex() {
-    std::vector<std::size_t> order(chunk_entries_.size());
+    std::vector<std::size_t> order(last_chunk_.entries.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
       order[i] = i;
     }
     // rosbag writes one index for each connection; the order in the file is that of the offsets.
     std::sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
-      return chunk_entries_[a].offset < chunk_entries_[b].offset;
+      return last_chunk_.entries[a].offset < last_chunk_.entries[b].offset;
     });
     for (const std::size_t i : order) {
-      index_.entries.push_back(chunk_entries_[i]);
-      entry_connections_.push_back(chunk_entry_connections_[i]);
+      index_.entries.push_back(last_chunk_.entries[i]);
+      entry_connections_.push_back(last_chunk_.connections[i]);
     }
   }
 
@@ -209,7 +218,7 @@ class IndexBuilder {
       return;
     }
     const ChunkBytes bytes = readChunk(file_, chunk);
-    if (!bytes.complete && !chunk_cut_) {
+    if (!bytes.complete && !last_chunk_.cut) {
       noteDamage(chunk.offset, "a chunk cannot be decompressed to its end");
     }
     scanRecords(MemorySource(bytes.data.get(), bytes.size), 0, bytes.size, number, take_messages);
@@ -223,7 +232,7 @@ class IndexBuilder {
       const std::optional<Record> record = readRecord(source, position, scratch);
       if (!record || record->end() > end ||
           (record->kind != RecordKind::kMessage && record->kind != RecordKind::kConnection)) {
-        if (!chunk_cut_) {
+        if (!last_chunk_.cut) {
           noteDamage(index_.chunks[chunk].offset, "the records of a chunk break off");
         }
         return;
@@ -313,12 +322,7 @@ class IndexBuilder {
   const std::string& path_;
   BagIndex index_;
   std::vector<std::uint32_t> entry_connections_;  ///< beside index_.entries until they are sorted
-
-  bool chunk_open_ = false;  ///< its index records may still follow
-  bool index_whole_ = true;  ///< no damage since the open chunk's data
-  bool chunk_cut_ = false;   ///< the open chunk ends early, and that was noted
-  std::vector<BagIndexEntry> chunk_entries_;
-  std::vector<std::uint32_t> chunk_entry_connections_;
+  LastChunk last_chunk_;
 
   std::uint64_t index_position_ = 0;
   std::uint32_t stated_connections_ = 0;

@@ -109,16 +109,17 @@ OnlineCalibration::OnlineCalibration(SensorSize size, ContrastThresholds nominal
       settings_(settings),
       in_force_{nominal, 0},
       log_latent_(size.pixelCount()),
-      previous_log_latent_(size.pixelCount()),
-      evidence_(size.pixelCount()) {}
+      evidence_(size.pixelCount()) {
+  previous_.log_latent.resize(size.pixelCount());
+}
 
 std::size_t OnlineCalibration::memoryBytes() const {
-  return (log_latent_.capacity() + previous_log_latent_.capacity()) * sizeof(float) +
+  return (log_latent_.capacity() + previous_.log_latent.capacity()) * sizeof(float) +
          evidence_.capacity() * sizeof(PixelEvidence);
 }
 
 std::int64_t OnlineCalibration::neededFrom() const {
-  return have_previous_ ? previous_window_.start_ns : std::numeric_limits<std::int64_t>::max();
+  return previous_.usable ? previous_.window.start_ns : std::numeric_limits<std::int64_t>::max();
 }
 
 CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraResponse& response,
@@ -127,8 +128,8 @@ CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraR
   resting_ = 0;
   const Calibration before = in_force_;
   CalibrationOutcome outcome = CalibrationOutcome::kNoPair;
-  if (have_previous_ && frame.window.start_ns >= previous_window_.end_ns) {
-    if (isHole(lists, previous_window_, frame.window)) {
+  if (previous_.usable && frame.window.start_ns >= previous_.window.end_ns) {
+    if (isHole(lists, previous_.window, frame.window)) {
       outcome = CalibrationOutcome::kNoEventsBetween;
     } else {
       const Band band = gather(frame, lists);
@@ -143,9 +144,9 @@ CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraR
       }
     }
   }
-  previous_log_latent_.swap(log_latent_);
-  previous_window_ = frame.window;
-  previous_reference_ns_ = frame.reference_ns;
+  previous_.log_latent.swap(log_latent_);
+  previous_.window = frame.window;
+  previous_.reference_ns = frame.reference_ns;
   if (outcome == CalibrationOutcome::kFitted) {
     useless_pairs_ = 0;
     resting_ = std::max(resting_, fits_ >= kInitialFits ? kRestFrames : 0);
@@ -153,13 +154,13 @@ CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraR
     resting_ = std::max(resting_, kRestFrames);
   }
   // No pair: the next frame is not needed, or will be closed otherwise than this one.
-  have_previous_ = resting_ == 0 && in_force_.thresholds == before.thresholds &&
-                   in_force_.event_delay_ns == before.event_delay_ns;
+  previous_.usable = resting_ == 0 && in_force_.thresholds == before.thresholds &&
+                     in_force_.event_delay_ns == before.event_delay_ns;
   return outcome;
 }
 
 void OnlineCalibration::skipFrame() {
-  have_previous_ = false;
+  previous_.usable = false;
   resting_ = std::max(0, resting_ - 1);
 }
 
@@ -203,7 +204,7 @@ OnlineCalibration::Band OnlineCalibration::nextBand(std::uint64_t events) {
 /// Sums up what the events of the pair say about the pixels of a band.
 OnlineCalibration::Band OnlineCalibration::gather(const Frame& frame,
                                                   const PixelEventLists& lists) {
-  const ExposureInterval& first = previous_window_;
+  const ExposureInterval& first = previous_.window;
   const ExposureInterval& second = frame.window;
   constexpr auto kNsPerMs = static_cast<float>(kNanosecondsPerMillisecond);
   // By phase: within the first exposure, between both, within the second.
@@ -221,7 +222,7 @@ OnlineCalibration::Band OnlineCalibration::gather(const Frame& frame,
   }
   const LevelModel& level = settings_.level;
   const bool has_ramps = !level.isStaircase();
-  const LevelInstant first_reference{previous_reference_ns_, first.end_ns};
+  const LevelInstant first_reference{previous_.reference_ns, first.end_ns};
   const LevelInstant second_reference{frame.reference_ns, second.end_ns};
   const auto mean_lead = static_cast<float>(0.5 * level.fraction);
   const std::uint64_t begin = lists.lowerBound(first.start_ns);
@@ -252,7 +253,7 @@ OnlineCalibration::Band OnlineCalibration::gather(const Frame& frame,
       pixel.weight[on] += weight;
       pixel.slope += slope[phase][on];
       pixel.count += 1.0F;
-      if (t_ns >= previous_reference_ns_) {
+      if (t_ns >= previous_.reference_ns) {
         pixel.level += step[on] * static_cast<float>(level.reached(t_ns, ticks, second_reference) -
                                                      level.reached(t_ns, ticks, first_reference));
       }
@@ -277,14 +278,14 @@ std::size_t OnlineCalibration::fit(const Band& band, NormalEquations& equations)
     }
     const std::size_t at = band.first_pixel + i;
     const auto residual =
-        static_cast<double>(log_latent_[at] - previous_log_latent_[at] - pixel.level);
+        static_cast<double>(log_latent_[at] - previous_.log_latent[at] - pixel.level);
     if (std::isnan(residual)) {
       continue;  // one of both grey levels is no evidence
     }
     const double scaled = residual / scale;
     // An error of log intensity is seen in proportion to the intensity.
     const double intensity = std::exp(
-        static_cast<double>(log_latent_[at] + previous_log_latent_[at]) - 2.0 * log_typical_);
+        static_cast<double>(log_latent_[at] + previous_.log_latent[at]) - 2.0 * log_typical_);
     const double weight =
         intensity /
         ((1.0 + scaled * scaled) * (1.0 + kVariancePerEvent * static_cast<double>(pixel.count)));

@@ -77,12 +77,12 @@ std::string EventPacketDecoder::begin(const EventPacket& packet) {
   if (packet.encoding == "libcaer") {
     encoding_ = Encoding::kLibcaer;
     word_bytes_ = kLibcaerBytes;
-    high_ns_ = packet.time_base_ns;
-    last_low_us_ = 0;
+    libcaer_.high_ns = packet.time_base_ns;
+    libcaer_.last_low_us = 0;
   } else if (packet.encoding == "libcaer_cmp") {
     encoding_ = Encoding::kLibcaerCompressed;
     word_bytes_ = kWordBytes;
-    time_high_us_ = time_low_us_ = 0;
+    word_.time_high_us = word_.time_low_us = 0;
   } else if (packet.encoding == "mono") {
     encoding_ = Encoding::kMono;
     word_bytes_ = kMonoBytes;
@@ -142,11 +142,11 @@ void EventPacketDecoder::decodeLibcaer(const std::uint8_t* word, std::vector<Eve
     return;
   }
   // Times may lie a little behind one another; a wrap takes them back by nearly all there is.
-  if (last_low_us_ > low_us && last_low_us_ - low_us > kLibcaerWrap_us / 2) {
-    high_ns_ += kLibcaerWrap_us * kNanoseconds;
+  if (libcaer_.last_low_us > low_us && libcaer_.last_low_us - low_us > kLibcaerWrap_us / 2) {
+    libcaer_.high_ns += kLibcaerWrap_us * kNanoseconds;
   }
-  last_low_us_ = low_us;
-  add(high_ns_ + low_us * kNanoseconds, (data >> kLibcaerXShift) & kLibcaerSide,
+  libcaer_.last_low_us = low_us;
+  add(libcaer_.high_ns + low_us * kNanoseconds, (data >> kLibcaerXShift) & kLibcaerSide,
       (data >> kLibcaerYShift) & kLibcaerSide, (data & kLibcaerOn) != 0, events);
 }
 
@@ -164,16 +164,16 @@ void EventPacketDecoder::decodeMono(const std::uint8_t* word, std::vector<Event>
 }
 
 std::uint64_t EventPacketDecoder::wordTime() const {
-  return (time_high_us_ + time_low_us_) * kNanoseconds;
+  return (word_.time_high_us + word_.time_low_us) * kNanoseconds;
 }
 
 void EventPacketDecoder::addMask(unsigned mask, unsigned count, bool along_x,
                                  std::vector<Event>& events) {
   const std::uint64_t base_ns = along_x ? evt3_offset_ns_.value_or(0) : packet_.time_base_ns;
-  unsigned& side = along_x ? x_ : y_;
+  unsigned& side = along_x ? word_.x : word_.y;
   for (unsigned i = 0; i < count; ++i, ++side) {
     if ((mask >> i & 1) != 0) {
-      add(base_ns + wordTime(), x_, y_, on_, events);
+      add(base_ns + wordTime(), word_.x, word_.y, word_.on, events);
     }
   }
   side &= kPayload;  // beyond any sensor, but within 16 bits
@@ -184,21 +184,21 @@ void EventPacketDecoder::decodeCompressed(const std::uint8_t* word, std::vector<
   const unsigned payload = data & kPayload;
   switch (data >> kCodeShift) {
     case kTimeHigh:
-      time_high_us_ = std::uint64_t{payload} << kTimeBits;
+      word_.time_high_us = std::uint64_t{payload} << kTimeBits;
       break;
     case kTimeLow:
-      time_low_us_ = payload;
+      word_.time_low_us = payload;
       break;
     case kX:
-      x_ = payload & kSide;
+      word_.x = payload & kSide;
       break;
     case kEventAtY:
-      add(packet_.time_base_ns + wordTime(), x_, payload & kSide, (payload & kPolarity) != 0,
+      add(packet_.time_base_ns + wordTime(), word_.x, payload & kSide, (payload & kPolarity) != 0,
           events);
       break;
     case kFirstY:
-      y_ = payload & kSide;
-      on_ = (payload & kPolarity) != 0;
+      word_.y = payload & kSide;
+      word_.on = (payload & kPolarity) != 0;
       break;
     case kMaskOfY:
       addMask(payload, kShortMask, false, events);
@@ -209,13 +209,13 @@ void EventPacketDecoder::decodeCompressed(const std::uint8_t* word, std::vector<
 }
 
 void EventPacketDecoder::setEvt3High(std::uint64_t high) {
-  const std::uint64_t last = time_high_us_ >> kTimeBits & kPayload;
-  std::uint64_t wraps_us = time_high_us_ >> kEvt3WrapBits << kEvt3WrapBits;
-  if (has_high_ && high < last && last - high > kEvt3Backwards) {
+  const std::uint64_t last = word_.time_high_us >> kTimeBits & kPayload;
+  std::uint64_t wraps_us = word_.time_high_us >> kEvt3WrapBits << kEvt3WrapBits;
+  if (word_.has_high && high < last && last - high > kEvt3Backwards) {
     wraps_us += std::uint64_t{1} << kEvt3WrapBits;
   }
-  time_high_us_ = wraps_us + (high << kTimeBits);
-  has_high_ = true;
+  word_.time_high_us = wraps_us + (high << kTimeBits);
+  word_.has_high = true;
 }
 
 void EventPacketDecoder::decodeEvt3(const std::uint8_t* word, std::vector<Event>& events) {
@@ -227,15 +227,15 @@ void EventPacketDecoder::decodeEvt3(const std::uint8_t* word, std::vector<Event>
       setEvt3High(payload);
       return;
     case kEvt3TimeLow:
-      time_low_us_ = payload;
-      has_time_ = has_high_;
+      word_.time_low_us = payload;
+      word_.has_time = word_.has_high;
       return;
     case kEvt3Y:
-      y_ = payload & kSide;
+      word_.y = payload & kSide;
       return;
     case kEvt3FirstX:
-      x_ = payload & kSide;
-      on_ = (payload & kPolarity) != 0;
+      word_.x = payload & kSide;
+      word_.on = (payload & kPolarity) != 0;
       return;
     case kEvt3EventAtX:
     case kEvt3Mask12:
@@ -251,14 +251,15 @@ void EventPacketDecoder::decodeEvt3(const std::uint8_t* word, std::vector<Event>
       ++unknown_words_;
       return;
   }
-  if (!has_time_) {
+  if (!word_.has_time) {
     return;  // the recording began in the middle: the camera tells its time soon
   }
   if (!evt3_offset_ns_) {
     evt3_offset_ns_ = static_cast<std::uint64_t>(packet_.stamp_ns) - wordTime();
   }
   if (code == kEvt3EventAtX) {
-    add(*evt3_offset_ns_ + wordTime(), payload & kSide, y_, (payload & kPolarity) != 0, events);
+    add(*evt3_offset_ns_ + wordTime(), payload & kSide, word_.y, (payload & kPolarity) != 0,
+        events);
   } else {
     addMask(payload, code == kEvt3Mask12 ? kLongMask : kShortMask, true, events);
   }

@@ -65,6 +65,21 @@ class EventPacketDecoder {
   void add(std::uint64_t t_ns, unsigned x, unsigned y, bool on, std::vector<Event>& events);
   std::uint64_t wordTime() const;
 
+  struct LibcaerClock {
+    std::uint64_t high_ns = 0;  ///< what is above the lower 31 bits
+    std::uint32_t last_low_us = 0;
+  };
+  /// What earlier words of encodings by 16-bit words have set.
+  struct WordState {
+    std::uint64_t time_high_us = 0;
+    std::uint64_t time_low_us = 0;
+    unsigned x = 0;
+    unsigned y = 0;
+    bool on = false;
+    bool has_high = false;
+    bool has_time = false;
+  };
+
   EventPacket packet_;
   Encoding encoding_ = Encoding::kLibcaer;
   std::size_t word_bytes_ = 1;
@@ -72,17 +87,8 @@ class EventPacketDecoder {
   std::size_t untold_ = 0;
   std::size_t unknown_words_ = 0;
 
-  std::uint64_t high_ns_ = 0;      ///< of libcaer: what is above the lower 31 bits
-  std::uint32_t last_low_us_ = 0;  ///< of libcaer
-
-  // Of encodings by 16-bit words.
-  std::uint64_t time_high_us_ = 0;
-  std::uint64_t time_low_us_ = 0;
-  unsigned x_ = 0;
-  unsigned y_ = 0;
-  bool on_ = false;
-  bool has_high_ = false;
-  bool has_time_ = false;
+  LibcaerClock libcaer_;
+  WordState word_;
   std::optional<std::uint64_t> evt3_offset_ns_;  ///< ROS time minus sensor time, modulo 2^64
 };
 

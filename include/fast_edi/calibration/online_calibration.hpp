@@ -103,7 +103,7 @@ class OnlineCalibration {
   CalibrationOutcome addFrame(const Frame& frame, const CameraResponse& response,
                               const PixelEventLists& lists);
   /// Discards the previous frame (after a gap), but not what was learned.
-  void interrupt() { have_previous_ = false; }
+  void interrupt() { previous_.usable = false; }
 
   /// Start of the earliest event that the next addFrame() needs; INT64_MAX while it needs none.
   std::int64_t neededFrom() const;
@@ -125,6 +125,13 @@ class OnlineCalibration {
     Eigen::Vector3d vector = Eigen::Vector3d::Zero();
   };
 
+  /// The frame before, as the next one is compared with it.
+  struct Previous {
+    bool usable = false;
+    ExposureInterval window;
+    std::int64_t reference_ns = 0;
+    std::vector<float> log_latent;  ///< as log_latent_
+  };
   /// Pixels of adjacent rows.
   struct Band {
     std::size_t first_pixel;
@@ -147,12 +154,9 @@ class OnlineCalibration {
   int resting_ = 0;        ///< frames until the next one is needed
   int next_row_ = 0;       ///< of the next band
 
-  bool have_previous_ = false;
-  ExposureInterval previous_window_;
-  std::int64_t previous_reference_ns_ = 0;
-  double log_typical_ = 0.0;       ///< log exposure of a typical grey
-  std::vector<float> log_latent_;  ///< log B + log gain; NaN where B is no evidence
-  std::vector<float> previous_log_latent_;
+  Previous previous_;
+  double log_typical_ = 0.0;             ///< log exposure of a typical grey
+  std::vector<float> log_latent_;        ///< log B + log gain; NaN where B is no evidence
   std::vector<PixelEvidence> evidence_;  ///< of the band, from its first pixel on
 };
 
