@@ -27,17 +27,21 @@ std::unique_ptr<fast_edi::Recording> openBagOrPictures(const std::string& path) 
   return fast_edi::openRecordingOrPictures(path);
 }
 
+/// Nothing for what is neither a bag nor a folder of pictures.
+std::unique_ptr<fast_edi::python::RecordingItems> openItems(const std::string& path,
+                                                            std::int64_t unit_ns) {
+  const pybind11::gil_scoped_release unlocked;
+  std::unique_ptr<fast_edi::Recording> recording = openBagOrPictures(path);
+  if (!recording) {
+    return nullptr;
+  }
+  return std::make_unique<fast_edi::python::RecordingItems>(std::move(recording), unit_ns);
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_bags, module) {
-  namespace py = pybind11;
-  py::module::import("fast_edi._fast_edi");  // has the class that open_recording() returns
+  pybind11::module::import("fast_edi._fast_edi");  // has the class that open_recording() returns
 
-  module.def("open_recording", [](const std::string& path, std::int64_t unit_ns) {
-    const py::gil_scoped_release unlocked;
-    std::unique_ptr<fast_edi::Recording> recording = openBagOrPictures(path);
-    return recording
-               ? std::make_unique<fast_edi::python::RecordingItems>(std::move(recording), unit_ns)
-               : nullptr;
-  });
+  module.def("open_recording", &openItems);
 }
