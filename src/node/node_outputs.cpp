@@ -54,8 +54,7 @@ std::string NodeOutputs::latentQueueFault(const LatentSampling& latent) const {
   return "the queue of " + latent_.getTopic() + " holds " + std::to_string(latent_queue_) +
          " images, expected " + std::to_string(needed) +
          " for this many latent images: slow subscribers may lose some; set latent_images before "
-         "the"
-         " node starts";
+         "the node starts";
 }
 
 std::string NodeOutputs::publishComparison(const sensor_msgs::Image& input,

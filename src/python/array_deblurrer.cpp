@@ -5,12 +5,12 @@
 #include <string>
 
 #include "fast_edi/base/parameter_ranges.hpp"
+#include "fast_edi/events/event_stream.hpp"
 #include "fast_edi/exposure/stamp_limits.hpp"
 
 namespace fast_edi::python {
 namespace {
 
-constexpr int kMaxSide_px = 32767;
 /// Longer than any ramp of the level model, so that what beginAt() adds reaches into no exposure.
 constexpr std::int64_t kBeforeStart_ns = 20 * kNanosecondsPerMillisecond;
 /// Refused, so that its frame has none and those behind it keep their own.
@@ -23,6 +23,7 @@ struct OwnedFrame {
 };
 
 SensorSize valid(SensorSize size) {
+  constexpr int kMaxSide_px = EventStream::kMaxSide_px;
   if (size.width < 1 || size.width > kMaxSide_px || size.height < 1 || size.height > kMaxSide_px) {
     throw std::invalid_argument(
         "sensor_size is (" + std::to_string(size.width) + ", " + std::to_string(size.height) +

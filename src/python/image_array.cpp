@@ -4,12 +4,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "fast_edi/events/event_stream.hpp"
+
 namespace fast_edi::python {
 namespace {
 
 namespace py = pybind11;
 
-constexpr int kMaxSide_px = 32767;
 constexpr int kColorSamples = 3;
 constexpr int kColorAlphaSamples = 4;
 
@@ -68,8 +69,8 @@ ImageView imageView(py::array& array, bool bayer) {
   ImageView view;
   view.format = formatOf(array, bayer);
   for (int i = 0; i < 2; ++i) {
-    if (array.shape(i) < 1 || array.shape(i) > kMaxSide_px) {
-      refuseShape(array, "height and width of 1.." + std::to_string(kMaxSide_px));
+    if (array.shape(i) < 1 || array.shape(i) > EventStream::kMaxSide_px) {
+      refuseShape(array, "height and width of 1.." + std::to_string(EventStream::kMaxSide_px));
     }
   }
   if (!readableInPlace(array)) {

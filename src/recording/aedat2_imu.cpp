@@ -1,12 +1,14 @@
 #include "recording/aedat2_imu.hpp"
 
+#include "recording/imu_units.hpp"
+
 namespace fast_edi {
 namespace {
 
 constexpr std::uint32_t kTemperature = 3;
 
-constexpr double kAccelerationScale = 9.80665 / 4096.0;                  ///< m/s^2
-constexpr double kAngularScale = 3.14159265358979323846 / 180.0 / 65.5;  ///< rad/s
+constexpr double kAccelerationScale = kStandardGravity / 4096.0;  ///< m/s^2
+constexpr double kAngularScale = kRadiansPerDegree / 65.5;        ///< rad/s
 
 }  // namespace
 

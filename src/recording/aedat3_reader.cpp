@@ -13,6 +13,7 @@
 #include "fast_edi/recording/recording_error.hpp"
 #include "recording/damage_notes.hpp"
 #include "recording/davis_geometry.hpp"
+#include "recording/imu_units.hpp"
 #include "recording/number_at.hpp"
 
 namespace fast_edi {
@@ -38,8 +39,6 @@ constexpr std::uint32_t kValid = 1;
 constexpr int kOverflowShift = 31;  ///< times have 31 bits
 /// One more than what a ROS time (32 bits of seconds) can hold; their nanoseconds fit into 64 bits.
 constexpr std::int64_t kMaxOverflows = std::int64_t{1} << 21;
-constexpr double kGravity = 9.80665;
-constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
 
 struct PacketHeader {
   std::int16_t kind = 0;
@@ -294,7 +293,7 @@ class Aedat3Reader : public Recording {
     RecordedImu sample;
     sample.t_ns = *t_ns;
     for (std::size_t i = 0; i < 3; ++i) {
-      sample.acceleration[i] = numberAt<float>(data + 8 + 4 * i) * kGravity;
+      sample.acceleration[i] = numberAt<float>(data + 8 + 4 * i) * kStandardGravity;
       sample.angular_velocity[i] = numberAt<float>(data + 20 + 4 * i) * kRadiansPerDegree;
     }
     record_ns_ = std::max(record_ns_, *t_ns);

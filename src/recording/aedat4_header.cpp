@@ -18,7 +18,6 @@ constexpr std::size_t kMagicBytes = sizeof(Aedat4Reader::kMagic) - 1;
 constexpr std::uint32_t kMaxHeaderBytes = 16 << 20;
 /// Larger tables are not read: the file is then read in its own order.
 constexpr std::size_t kMaxTableBytes = std::size_t{256} << 20;
-constexpr int kMaxSide_px = std::numeric_limits<std::int16_t>::max();
 
 // Fields of the tables.
 constexpr int kHeaderCompression = 0;
@@ -99,8 +98,8 @@ void readStream(const XMLElement& node, Aedat4Header& header) {
   stream.name = valueOf(node, "originalOutputName");
   if (const XMLElement* info = childNode(node, "info")) {
     stream.camera = valueOf(*info, "source");
-    stream.size = {wholeNumber(valueOf(*info, "sizeX"), kMaxSide_px).value_or(0),
-                   wholeNumber(valueOf(*info, "sizeY"), kMaxSide_px).value_or(0)};
+    stream.size = {wholeNumber(valueOf(*info, "sizeX"), kAedat4MaxSide_px).value_or(0),
+                   wholeNumber(valueOf(*info, "sizeY"), kAedat4MaxSide_px).value_or(0)};
   }
   header.streams[*id] = stream;
 }

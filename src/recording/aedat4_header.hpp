@@ -15,6 +15,7 @@
 namespace fast_edi {
 
 constexpr std::size_t kAedat4PacketHeaderBytes = 8;  ///< i32 stream, i32 size
+constexpr int kAedat4MaxSide_px = 32767;             ///< fields of 16 bits with a sign
 constexpr char kAedat4Events[] = "EVTS";
 constexpr char kAedat4Frames[] = "FRME";
 constexpr char kAedat4Imu[] = "IMUS";

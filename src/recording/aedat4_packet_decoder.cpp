@@ -1,18 +1,15 @@
 #include "recording/aedat4_packet_decoder.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "recording/aedat4_header.hpp"
 #include "recording/aedat4_stamp.hpp"
 #include "recording/damage_notes.hpp"
+#include "recording/imu_units.hpp"
 #include "recording/number_at.hpp"
 
 namespace fast_edi {
 namespace {
-
-constexpr double kGravity = 9.80665;  ///< m/s^2
-constexpr double kRadiansPerDegree = 0.017453292519943295;
 
 // Fields of a packet of events, IMU samples or triggers; an event is a struct.
 constexpr int kElements = 0;
@@ -27,8 +24,6 @@ constexpr int kSampleAcceleration = 2;
 constexpr int kSampleAngularVelocity = 5;
 constexpr int kTriggerTime = 0;
 constexpr int kTriggerType = 1;
-
-constexpr int kMaxSide_px = std::numeric_limits<std::int16_t>::max();
 
 }  // namespace
 
@@ -142,8 +137,8 @@ bool Aedat4PacketDecoder::giveElement(RecordingItem& item, StreamKind kind, std:
   sample.t_ns = *t_ns;
   for (int axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
-    sample.acceleration[i] =
-        kGravity * static_cast<double>(element->number<float>(kSampleAcceleration + axis, 0.0F));
+    sample.acceleration[i] = kStandardGravity * static_cast<double>(element->number<float>(
+                                                    kSampleAcceleration + axis, 0.0F));
     sample.angular_velocity[i] = kRadiansPerDegree * static_cast<double>(element->number<float>(
                                                          kSampleAngularVelocity + axis, 0.0F));
   }
@@ -167,7 +162,7 @@ SensorSize Aedat4PacketDecoder::sensorOf(const RecordedStream& frames) const {
     return stream.kind == StreamKind::kEvents && stream.camera == frames.camera;
   });
   const SensorSize size = events != streams_.end() ? events->size : frames.size;
-  return size.width <= kMaxSide_px && size.height <= kMaxSide_px ? size : SensorSize{};
+  return size.width <= kAedat4MaxSide_px && size.height <= kAedat4MaxSide_px ? size : SensorSize{};
 }
 
 }  // namespace fast_edi

@@ -13,6 +13,7 @@
 #include "fast_edi/recording/recording_error.hpp"
 #include "recording/aedat4_header.hpp"
 #include "recording/flatbuffer_writer.hpp"
+#include "recording/imu_units.hpp"
 #include "recording/packet_compression.hpp"
 
 namespace fast_edi {
@@ -22,7 +23,6 @@ namespace fs = std::filesystem;
 using Field = FlatBufferWriter::Field;
 using Reference = FlatBufferWriter::Reference;
 
-constexpr double kGravity = 9.80665;  ///< m/s^2
 constexpr double kDegreesPerRadian = 57.29577951308232;
 /// IMU samples of one packet, as DV has them.
 constexpr std::size_t kPacketSamples = 10;
@@ -352,7 +352,7 @@ class Aedat4Writer::Impl {
       int index = 2;
       for (const double acceleration : samples[i].acceleration) {
         fields.push_back(
-            FlatBufferWriter::number(index++, static_cast<float>(acceleration / kGravity)));
+            FlatBufferWriter::number(index++, static_cast<float>(acceleration / kStandardGravity)));
       }
       for (const double velocity : samples[i].angular_velocity) {
         fields.push_back(
