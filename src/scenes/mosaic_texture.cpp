@@ -15,7 +15,10 @@ void drawMosaic(cv::Mat3f& canvas, double scale, RandomEngine& random) {
   const int rows = static_cast<int>(canvas.rows / (kStonePx * scale)) + 1;
   cv::Mat1b ground(canvas.size(), std::uint8_t{1});
   for (int i = 0; i < columns * rows; ++i) {
-    ground(uniformInt(random, 0, canvas.rows - 1), uniformInt(random, 0, canvas.cols - 1)) = 0;
+    // One by one: compilers choose the order in which arguments are evaluated.
+    const int column = uniformInt(random, 0, canvas.cols - 1);
+    const int row = uniformInt(random, 0, canvas.rows - 1);
+    ground(row, column) = 0;
   }
   // Each element belongs to the nearest centre: a Voronoi diagram.
   cv::Mat1f distance;

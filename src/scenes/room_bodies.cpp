@@ -98,8 +98,16 @@ std::vector<TexturedBody> RoomBuilder::furniture() {
   const double wall_x = 0.5 * room_.length_m - 0.55;
   const double wall_y = 0.5 * room_.width_m - 0.55;
   for (const double sign : {-1.0, 1.0}) {
-    add(sign * wall_x, uniform(-0.5, 0.5), uniform(0.4, 0.6), uniform(0.5, 1.1), false);
-    add(uniform(-0.7, 0.7), sign * wall_y, uniform(0.4, 0.6), uniform(0.5, 1.1), false);
+    for (const bool end_wall : {true, false}) {
+      // One by one: compilers choose the order in which arguments are evaluated.
+      const double height_m = uniform(0.5, 1.1);
+      const double side_m = uniform(0.4, 0.6);
+      if (end_wall) {
+        add(sign * wall_x, uniform(-0.5, 0.5), side_m, height_m, false);
+      } else {
+        add(uniform(-0.7, 0.7), sign * wall_y, side_m, height_m, false);
+      }
+    }
   }
   return bodies;
 }

@@ -190,9 +190,11 @@ std::vector<Sticker> placeStickers(cv::Size size_px, double density,
     for (int column = 0; column < columns; ++column) {
       // Every place has random numbers of its own, so that it does not depend on its neighbours.
       RandomEngine place(random());
-      const cv::Point2d center(
-          (column + 0.5 - 0.5 * columns) * kPitchPx + uniform(place, -5.0, 5.0),
-          (row + 0.5 - 0.5 * rows) * kPitchPx + uniform(place, -5.0, 5.0));
+      // One by one, here and below: compilers choose the order in which arguments are evaluated.
+      const double shift_y = uniform(place, -5.0, 5.0);
+      const double shift_x = uniform(place, -5.0, 5.0);
+      const cv::Point2d center((column + 0.5 - 0.5 * columns) * kPitchPx + shift_x,
+                               (row + 0.5 - 0.5 * rows) * kPitchPx + shift_y);
       const double radius = uniform(place, 12.0, 20.0);
       const int kind = uniformInt(place, 0, kKindCount - 1);
       if (uniform(place, 0.0, 1.0) > density || nearTag(center, radius + kClearancePx, tags)) {
@@ -277,7 +279,9 @@ void drawNatural(cv::Mat3f& canvas, double scale, RandomEngine& random) {
     const double a = 1.0 / (kSmallestPx * kSmallestPx);
     const double b = 1.0 / (kLargestPx * kLargestPx);
     const double radius = scale / std::sqrt(a + u * (b - a));
-    const cv::Point2d center(uniform(random, 0.0, canvas.cols), uniform(random, 0.0, canvas.rows));
+    const double y = uniform(random, 0.0, canvas.rows);
+    const double x = uniform(random, 0.0, canvas.cols);
+    const cv::Point2d center(x, y);
     const Color color =
         tinted(random, std::exp(uniform(random, std::log(0.08), std::log(0.75))), 0.3);
     const double turn = uniform(random, 0.0, CV_PI);

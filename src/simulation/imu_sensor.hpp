@@ -12,7 +12,8 @@
 
 namespace fast_edi {
 
-/// Strength of gravity, along -z of the world [m/s^2].
+/// Strength of gravity, along -z of the world [m/s^2]: the value that VINS-Mono's configurations
+/// use. Standard gravity, 9.80665, is something else: the unit in which recordings count.
 constexpr double kGravity = 9.81;
 
 /// One reading, in the camera's optical frame. At rest with a level camera the acceleration is

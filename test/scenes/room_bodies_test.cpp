@@ -43,6 +43,16 @@ TEST(RoomBodies, WallsAreSeenFromWithin) {
               1e-9);
 }
 
+/// Random numbers are drawn in a fixed order, not in one that the compiler chooses.
+TEST(RoomBodies, FurnitureIsTheSameWithEveryCompiler) {
+  const RoomBodies bodies = makeCoarse(1);
+  ASSERT_EQ(bodies.furniture.size(), 8u);
+  const Eigen::Vector3d box(-3.007060971355656, -0.56310370922340114, 0.52336565744702535);
+  EXPECT_LT((bodies.furniture[4].centre - box).norm(), 1e-12) << "at a wall along y";
+  const Eigen::Vector3d other(-0.6059642739774983, -2.3010008897932765, 0.32410234811578553);
+  EXPECT_LT((bodies.furniture[5].centre - other).norm(), 1e-12) << "at a wall along x";
+}
+
 TEST(RoomBodies, FurnitureStandsOnTheFloorWithinTheWalls) {
   const RoomSettings room = coarseRoom();
   const RoomBodies bodies = makeCoarse(1);
