@@ -83,7 +83,7 @@ TEST_F(NodeReportTest, TakesOverThePipelineWithItsThresholds) {
   EXPECT_EQ(totals.counters.frames_in, 0U);
 }
 
-TEST_F(NodeReportTest, IsPublishedWithLatenciesAndWhatWentWrong) {
+TEST(NodeReport, IsPublishedWithLatenciesAndWhatWentWrong) {
   test::requireRos();
   ros::CallbackQueue queue;
   ros::NodeHandle nh;
@@ -97,19 +97,20 @@ TEST_F(NodeReportTest, IsPublishedWithLatenciesAndWhatWentWrong) {
           }
         }
       });
-  report_.advertise(nh, ros::NodeHandle("/report_test"), "/report_test");
+  NodeReport report("/deblur", kTopics);  // ends before its queue
+  report.advertise(nh, ros::NodeHandle("/report_test"), "/report_test");
   const std::int64_t now_ns = 100 * kNanosecondsPerSecond;
-  report_.startListening(now_ns);
-  report_.totals().last_frame_ns = now_ns;
-  report_.totals().last_events_ns = now_ns;
-  report_.totals().listening = true;
-  report_.addOutput(now_ns, now_ns - 2 * kNanosecondsPerMillisecond,
-                    now_ns - 7 * kNanosecondsPerMillisecond);
-  report_.addRefusedBiases("DiffBn_fine: found 300");
+  report.startListening(now_ns);
+  report.totals().last_frame_ns = now_ns;
+  report.totals().last_events_ns = now_ns;
+  report.totals().listening = true;
+  report.addOutput(now_ns, now_ns - 2 * kNanosecondsPerMillisecond,
+                   now_ns - 7 * kNanosecondsPerMillisecond);
+  report.addRefusedBiases("DiffBn_fine: found 300");
   ASSERT_TRUE(test::waitUntil([&] {
     if (subscriber.getNumPublishers() > 0 && published.name.empty()) {
-      report_.publish(now_ns);
-      report_.addRefusedBiases("DiffBn_fine: found 300");
+      report.publish(now_ns);
+      report.addRefusedBiases("DiffBn_fine: found 300");
     }
     queue.callAvailable(ros::WallDuration(0.01));
     return value(published, "Frames out") == "1" &&
