@@ -3,15 +3,14 @@
 namespace fast_edi {
 
 NodeReport::NodeReport(const std::string& name, const InputTopics& topics)
-    : diagnostics_(topics), warnings_(name) {}
+    : diagnostics_(topics), publisher_(name) {}
 
 void NodeReport::advertise(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh,
                            const std::string& name) {
-  updater_.emplace(nh, private_nh, name);
-  updater_->setHardwareID("none");
-  updater_->add("deblurring", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
-    diagnostics_.fill(close_latency_, output_latency_, status);
-  });
+  publisher_.advertise(nh, private_nh, name, "deblurring",
+                       [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+                         diagnostics_.fill(close_latency_, output_latency_, status);
+                       });
 }
 
 void NodeReport::startListening(std::int64_t now_ns) {
@@ -30,7 +29,7 @@ void NodeReport::addOutput(std::int64_t published_ns, std::int64_t completed_ns,
 void NodeReport::addInternalError(const std::string& error, std::int64_t now_ns) {
   ++snapshot_.internal_errors;
   snapshot_.internal_error = error;
-  warnings_.warn("internal error", error, now_ns);
+  publisher_.warnings().warn("internal error", error, now_ns);
 }
 
 void NodeReport::addRefusedValue(const std::string& refusal) {
@@ -62,10 +61,7 @@ void NodeReport::setPipeline(const Deblurrer& deblurrer, const std::string& cont
 void NodeReport::publish(std::int64_t now_ns) {
   snapshot_.time_ns = now_ns;
   diagnostics_.update(snapshot_);
-  for (const Complaint& complaint : diagnostics_.complaints()) {
-    warnings_.warn(complaint.kind, complaint.text, now_ns);
-  }
-  updater_->force_update();
+  publisher_.publish(diagnostics_.complaints(), now_ns);
 }
 
 }  // namespace fast_edi

@@ -3,16 +3,14 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
 
 #include "fast_edi/pipeline/deblurrer.hpp"
 #include "node/latency_record.hpp"
 #include "node/node_diagnostics.hpp"
-#include "node/throttled_warnings.hpp"
+#include "node/report_publisher.hpp"
 
 namespace fast_edi {
 
@@ -45,7 +43,7 @@ class NodeReport {
   void addRefusedCameraInfo(const std::string& refusal);
 
   /// Throttled: see ThrottledWarnings.
-  ThrottledWarnings& warnings() { return warnings_; }
+  ThrottledWarnings& warnings() { return publisher_.warnings(); }
 
   /// State of the pipeline for the next report.
   /// \param listening whether inputs are wanted
@@ -58,8 +56,7 @@ class NodeReport {
   LatencyRecord close_latency_;
   LatencyRecord output_latency_;
   NodeDiagnostics diagnostics_;
-  ThrottledWarnings warnings_;
-  std::optional<diagnostic_updater::Updater> updater_;
+  ReportPublisher publisher_;
 };
 
 }  // namespace fast_edi

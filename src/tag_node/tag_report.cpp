@@ -3,15 +3,14 @@
 namespace fast_edi {
 
 TagReport::TagReport(const std::string& name, const std::string& image_topic)
-    : diagnostics_(image_topic), warnings_(name) {}
+    : diagnostics_(image_topic), publisher_(name) {}
 
 void TagReport::advertise(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh,
                           const std::string& name) {
-  updater_.emplace(nh, private_nh, name);
-  updater_->setHardwareID("none");
-  updater_->add("tag detection", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
-    diagnostics_.fill(detection_time_, status);
-  });
+  publisher_.advertise(nh, private_nh, name, "tag detection",
+                       [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+                         diagnostics_.fill(detection_time_, status);
+                       });
 }
 
 void TagReport::startListening(std::int64_t now_ns) {
@@ -40,17 +39,14 @@ void TagReport::addFrame(std::size_t tags) {
 void TagReport::addInternalError(const std::string& error, std::int64_t now_ns) {
   ++snapshot_.internal_errors;
   snapshot_.internal_error = error;
-  warnings_.warn("internal error", error, now_ns);
+  publisher_.warnings().warn("internal error", error, now_ns);
 }
 
 void TagReport::publish(bool listening, std::int64_t now_ns) {
   snapshot_.time_ns = now_ns;
   snapshot_.listening = listening;
   diagnostics_.update(snapshot_);
-  for (const Complaint& complaint : diagnostics_.complaints()) {
-    warnings_.warn(complaint.kind, complaint.text, now_ns);
-  }
-  updater_->force_update();
+  publisher_.publish(diagnostics_.complaints(), now_ns);
 }
 
 }  // namespace fast_edi

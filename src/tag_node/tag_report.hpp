@@ -4,15 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
 
 #include "fast_edi/events/sequence_gaps.hpp"
 #include "node/latency_record.hpp"
-#include "node/throttled_warnings.hpp"
+#include "node/report_publisher.hpp"
 #include "tag_node/tag_diagnostics.hpp"
 
 namespace fast_edi {
@@ -56,8 +54,7 @@ class TagReport {
   SequenceGaps image_gaps_;
   LatencyRecord detection_time_;
   TagDiagnostics diagnostics_;
-  ThrottledWarnings warnings_;
-  std::optional<diagnostic_updater::Updater> updater_;
+  ReportPublisher publisher_;
 };
 
 }  // namespace fast_edi

@@ -108,23 +108,9 @@ bool publisherSendsToUs(const std::string& topic) {
 
 NodeClient::NodeClient(const std::string& ns, const std::string& node, const std::string& output,
                        const InputTopics& inputs)
-    : ns_(ns), node_(node), output_(output), nh_(ns) {
-  events_ = nh_.advertise<EventArray>(inputs.events, kQueue);
-  image_ = nh_.advertise<sensor_msgs::Image>(inputs.image, kQueue);
-  exposure_ = nh_.advertise<std_msgs::Int32>(inputs.exposure, kQueue);
-  camera_info_ = nh_.advertise<sensor_msgs::CameraInfo>(inputs.camera_info, kQueue);
+    : ns_(ns), node_(node), output_(output), nh_(ns), camera_(nh_, inputs) {
   diagnostics_ = nh_.subscribe("/diagnostics", kQueue, &NodeClient::receiveDiagnostics, this);
   spinner_.start();
-}
-
-bool NodeClient::allInputsConnected() const {
-  return events_.getNumSubscribers() > 0 && image_.getNumSubscribers() > 0 &&
-         exposure_.getNumSubscribers() > 0 && camera_info_.getNumSubscribers() > 0;
-}
-
-bool NodeClient::anyInputConnected() const {
-  return events_.getNumSubscribers() > 0 || image_.getNumSubscribers() > 0 ||
-         exposure_.getNumSubscribers() > 0 || camera_info_.getNumSubscribers() > 0;
 }
 
 bool NodeClient::listen() {
@@ -148,18 +134,6 @@ bool NodeClient::stopListening() {
   output_image_.shutdown();
   output_info_.shutdown();
   return waitUntil([this] { return !anyInputConnected(); });
-}
-
-void NodeClient::publish(const Arrival& arrival) {
-  if (arrival.events) {
-    events_.publish(arrival.events);
-  } else if (arrival.image) {
-    image_.publish(arrival.image);
-  } else if (arrival.info) {
-    camera_info_.publish(arrival.info);
-  } else {
-    exposure_.publish(arrival.exposure);
-  }
 }
 
 void NodeClient::play(const Recording& recording) {

@@ -14,10 +14,10 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <diagnostic_msgs/DiagnosticStatus.h>
 #include <ros/node_handle.h>
-#include <ros/publisher.h>
 #include <ros/spinner.h>
 #include <ros/subscriber.h>
 
+#include "rostest/camera_publishers.hpp"
 #include "rostest/recording.hpp"
 
 namespace fast_edi {
@@ -27,14 +27,6 @@ constexpr std::chrono::seconds kDeadline(30);
 
 /// The value of a diagnostic report, "" when it has none of that name.
 std::string valueOf(const diagnostic_msgs::DiagnosticStatus& status, const std::string& key);
-
-/// Inputs of the node within its namespace.
-struct InputTopics {
-  std::string events = "events";
-  std::string image = "image_raw";
-  std::string camera_info = "camera_info";
-  std::string exposure = "exposure";
-};
 
 class NodeClient {
  public:
@@ -50,11 +42,11 @@ class NodeClient {
   /// Unsubscribes. \return false when the node did not unsubscribe from its inputs in time
   bool stopListening();
   /// True while the node subscribes to all / any of its inputs.
-  bool allInputsConnected() const;
-  bool anyInputConnected() const;
+  bool allInputsConnected() const { return camera_.allConnected(); }
+  bool anyInputConnected() const { return camera_.anyConnected(); }
 
-  void publish(const Arrival& arrival);
-  void publish(const sensor_msgs::ImageConstPtr& image) { image_.publish(image); }
+  void publish(const Arrival& arrival) { camera_.publish(arrival); }
+  void publish(const sensor_msgs::ImageConstPtr& image) { camera_.publish(image); }
   /// Publishes \p recording at real speed.
   void play(const Recording& recording);
   ros::NodeHandle& nodeHandle() { return nh_; }
@@ -79,6 +71,7 @@ class NodeClient {
   std::string node_;
   std::string output_;
   ros::NodeHandle nh_;
+  CameraPublishers camera_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<sensor_msgs::ImageConstPtr> images_;
@@ -86,10 +79,6 @@ class NodeClient {
   diagnostic_msgs::DiagnosticStatus report_;
   std::uint64_t reports_ = 0;
 
-  ros::Publisher events_;
-  ros::Publisher image_;
-  ros::Publisher exposure_;
-  ros::Publisher camera_info_;
   ros::Subscriber diagnostics_;
   ros::Subscriber output_image_;
   ros::Subscriber output_info_;

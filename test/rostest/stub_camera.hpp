@@ -8,8 +8,8 @@
 #include <thread>
 
 #include <ros/node_handle.h>
-#include <ros/publisher.h>
 
+#include "rostest/camera_publishers.hpp"
 #include "rostest/recording.hpp"
 
 namespace fast_edi {
@@ -29,13 +29,9 @@ class StubCamera {
 
  private:
   void run(RecordingSettings settings, int haste);
-  void publish(const Arrival& arrival);
 
   ros::NodeHandle nh_;
-  ros::Publisher events_;
-  ros::Publisher image_;
-  ros::Publisher exposure_;
-  ros::Publisher camera_info_;
+  const CameraPublishers publishers_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
