@@ -1,4 +1,5 @@
 #include "fast_edi/events/event_stream.hpp"
+#include "fast_edi/base/sensor_size.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -18,8 +19,8 @@ WireEvents viewOf(const std::vector<std::uint8_t>& bytes) {
 }
 
 bool isValid(SensorSize size) {
-  return size.width >= 1 && size.width <= EventStream::kMaxSide_px && size.height >= 1 &&
-         size.height <= EventStream::kMaxSide_px;
+  return size.width >= 1 && size.width <= kMaxSide_px && size.height >= 1 &&
+         size.height <= kMaxSide_px;
 }
 
 }  // namespace

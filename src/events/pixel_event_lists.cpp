@@ -6,11 +6,11 @@
 #include <string>
 
 #include "events/wire_block.hpp"
+#include "fast_edi/base/sensor_size.hpp"
 
 namespace fast_edi {
 namespace {
 
-constexpr int kMaxSide_px = 32767;         // signed 16-bit arithmetic computes pixel indices
 constexpr std::size_t kBlockEvents = 128;  // stays in the first-level cache between stages
 /// After an irregular one, blocks begin small: where irregular records come again and again, blocks
 /// that turn out to hold one cost little.

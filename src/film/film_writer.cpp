@@ -115,7 +115,7 @@ std::optional<FilmWriter::Shot> FilmWriter::take(const sensor_msgs::Image& image
   Shot shot;
   shot.t_ns = static_cast<std::int64_t>(image.header.stamp.toNSec());
   try {
-    shot.picture = colorPixels(image);
+    shot.picture = colourPixels(image);
   } catch (const std::invalid_argument&) {  // an encoding that was only passed through
     ++report_.left_out;
     return std::nullopt;

@@ -317,7 +317,7 @@ void CameraResponse::applyGain(const ImageView& in, const float* gain,
     if (samplesPerPixel(in.format) == 1) {
       applySamples(in.format, from, row_gain, width, to);
     } else {
-      applyColor(in.format, from, row_gain, width, to);
+      applyColour(in.format, from, row_gain, width, to);
     }
   }
 }
@@ -350,13 +350,13 @@ void CameraResponse::apply16(const std::uint8_t* in, const float* gain, std::siz
   }
 }
 
-void CameraResponse::applyColor(PixelFormat format, const std::uint8_t* in, const float* gain,
-                                std::size_t width, std::uint8_t* out) const {
+void CameraResponse::applyColour(PixelFormat format, const std::uint8_t* in, const float* gain,
+                                 std::size_t width, std::uint8_t* out) const {
   // Several samples per gain do not vectorise; one gain for each sample does. That of alpha is 1,
   // which leaves a level as it is.
   constexpr std::size_t kMostSamples = 4;
   constexpr std::size_t kBlockPixels = 128;
-  const auto colors = static_cast<std::size_t>(channels(format));
+  const auto colours = static_cast<std::size_t>(channels(format));
   const auto samples = static_cast<std::size_t>(samplesPerPixel(format));
   const auto bytes = static_cast<std::size_t>(bytesPerPixel(format));
   std::array<float, kBlockPixels * kMostSamples> sample_gain{};
@@ -364,7 +364,7 @@ void CameraResponse::applyColor(PixelFormat format, const std::uint8_t* in, cons
   for (std::size_t begin = 0; begin < width; begin += kBlockPixels) {
     const std::size_t count = std::min(kBlockPixels, width - begin);
     for (std::size_t i = 0; i < count; ++i) {
-      std::fill_n(&sample_gain[i * samples], colors, gain[begin + i]);
+      std::fill_n(&sample_gain[i * samples], colours, gain[begin + i]);
     }
     applySamples(format, in + begin * bytes, sample_gain.data(), count * samples,
                  out + begin * bytes);

@@ -48,12 +48,12 @@ bool hasNoticeableDistortion(const cv::Mat1d& block) {
 
 bool hasNoise(const cv::Mat1d& block, double deviation) {
   const int middle = kPiqeBlockPx / 2;
-  const cv::Mat1d center = block.colRange(middle - 1, middle + 1);
+  const cv::Mat1d centre = block.colRange(middle - 1, middle + 1);
   cv::Mat1d surround;
   cv::hconcat(block.colRange(0, middle - 1), block.colRange(middle + 1, kPiqeBlockPx), surround);
   const double surround_deviation = sampleDeviation(surround);
   const double ratio =
-      surround_deviation > 0.0 ? sampleDeviation(center) / surround_deviation : 0.0;
+      surround_deviation > 0.0 ? sampleDeviation(centre) / surround_deviation : 0.0;
   const double beta = std::abs(deviation - ratio) / std::max(deviation, ratio);
   return deviation > kNoiseFactor * beta;
 }
@@ -64,7 +64,7 @@ int paddingToBlocks(int length) {
 
 }  // namespace
 
-cv::Mat1d normalizedCoefficients(const cv::Mat& image) {
+cv::Mat1d normalisedCoefficients(const cv::Mat& image) {
   cv::Mat1d values;
   image.convertTo(values, CV_64F);
   const auto local_mean = [](const cv::Mat1d& of) {
@@ -97,7 +97,7 @@ PiqeResult piqe(const cv::Mat& image) {
   cv::Mat padded;
   cv::copyMakeBorder(image, padded, 0, paddingToBlocks(image.rows), 0, paddingToBlocks(image.cols),
                      cv::BORDER_REFLECT);
-  const cv::Mat1d coefficients = normalizedCoefficients(padded);
+  const cv::Mat1d coefficients = normalisedCoefficients(padded);
 
   PiqeResult result;
   double distortion = 0.0;

@@ -44,7 +44,7 @@ struct PiqeResult {
 };
 
 /// Step 1, CV_64FC1 of the same size. \param image CV_8UC1, CV_32FC1 or CV_64FC1 [DN of 8 bits]
-cv::Mat1d normalizedCoefficients(const cv::Mat& image);
+cv::Mat1d normalisedCoefficients(const cv::Mat& image);
 
 /// Steps 2 and 3 for one block. \pre coefficients is kPiqeBlockPx x kPiqeBlockPx
 PiqeBlock assessPiqeBlock(const cv::Mat1d& coefficients);

@@ -67,14 +67,14 @@ ImageFeatures describeSurf(const cv::Mat& image, const std::vector<SurfPlace>& p
   for (const SurfPlace& place : places) {
     const double scale = place.diameter / kSquarePerScale;
     const auto border = static_cast<unsigned long>(kBorderPerScale * scale);
-    const dlib::vector<double, 2> center(place.center.x, place.center.y);
-    if (!dlib::get_rect(integral).contains(dlib::centered_rect(center, border, border))) {
+    const dlib::vector<double, 2> centre(place.centre.x, place.centre.y);
+    if (!dlib::get_rect(integral).contains(dlib::centered_rect(centre, border, border))) {
       continue;
     }
-    const double angle = dlib::compute_dominant_angle(integral, center, scale);
+    const double angle = dlib::compute_dominant_angle(integral, centre, scale);
     dlib::matrix<double, kSurfLength, 1> descriptor;
-    dlib::compute_surf_descriptor(integral, center, scale, angle, descriptor);
-    appendFeature(center, descriptor, features);
+    dlib::compute_surf_descriptor(integral, centre, scale, angle, descriptor);
+    appendFeature(centre, descriptor, features);
   }
   return features;
 }

@@ -12,7 +12,7 @@ namespace fast_edi {
 
 /// Where a descriptor is wanted.
 struct SurfPlace {
-  cv::Point2d center;     ///< [px]
+  cv::Point2d centre;     ///< [px]
   double diameter = 0.0;  ///< side of the square that the descriptor covers [px]
 };
 

@@ -27,7 +27,7 @@ struct Conversion {
   int samples;
   int bytes;    ///< of a sample
   int to_grey;  ///< code of cv::cvtColor
-  int to_color;
+  int to_colour;
 };
 
 /// OpenCV names Bayer patterns by the second row's second and third pixel.
@@ -93,25 +93,25 @@ cv::Mat greyPixels(const sensor_msgs::Image& message) {
   return grey;
 }
 
-cv::Mat colorPixels(const sensor_msgs::Image& message) {
+cv::Mat colourPixels(const sensor_msgs::Image& message) {
   const Conversion& conversion = conversionOf(message.encoding);
   cv::Mat pixels = eightBits(message, conversion);
-  if (conversion.to_color == kAsItIs) {
+  if (conversion.to_colour == kAsItIs) {
     return pixels.clone();
   }
-  cv::Mat color;
-  cv::cvtColor(pixels, color, conversion.to_color);
-  return color;
+  cv::Mat colour;
+  cv::cvtColor(pixels, colour, conversion.to_colour);
+  return colour;
 }
 
-sensor_msgs::ImagePtr colorMessage(const std_msgs::Header& header, const cv::Mat& color) {
+sensor_msgs::ImagePtr colourMessage(const std_msgs::Header& header, const cv::Mat& colour) {
   auto message = boost::make_shared<sensor_msgs::Image>();
   message->header = header;
-  const auto rows = static_cast<std::uint32_t>(color.rows);
-  const auto columns = static_cast<std::uint32_t>(color.cols);
-  const cv::Mat packed = color.isContinuous() ? color : color.clone();
+  const auto rows = static_cast<std::uint32_t>(colour.rows);
+  const auto columns = static_cast<std::uint32_t>(colour.cols);
+  const cv::Mat packed = colour.isContinuous() ? colour : colour.clone();
   sensor_msgs::fillImage(*message, sensor_msgs::image_encodings::BGR8, rows, columns,
-                         columns * static_cast<std::uint32_t>(color.elemSize()), packed.data);
+                         columns * static_cast<std::uint32_t>(colour.elemSize()), packed.data);
   return message;
 }
 

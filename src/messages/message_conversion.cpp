@@ -1,10 +1,10 @@
 #include "fast_edi/messages/message_conversion.hpp"
+#include "fast_edi/base/sensor_size.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include <boost/make_shared.hpp>
@@ -12,7 +12,7 @@
 namespace fast_edi {
 namespace {
 
-constexpr std::uint32_t kMaxSide = std::numeric_limits<std::int16_t>::max();
+constexpr std::uint32_t kMaxSide = kMaxSide_px;
 
 struct Encoding {
   const char* name;
@@ -21,11 +21,11 @@ struct Encoding {
 
 constexpr std::array<Encoding, 19> kEncodings{{
     {"mono8", PixelFormat::kMono8},          {"8UC1", PixelFormat::kMono8},
-    {"mono16", PixelFormat::kMono16},        {"rgb8", PixelFormat::kColor8},
-    {"bgr8", PixelFormat::kColor8},          {"rgba8", PixelFormat::kColorAlpha8},
-    {"bgra8", PixelFormat::kColorAlpha8},    {"rgb16", PixelFormat::kColor16},
-    {"bgr16", PixelFormat::kColor16},        {"rgba16", PixelFormat::kColorAlpha16},
-    {"bgra16", PixelFormat::kColorAlpha16},  {"bayer_rggb8", PixelFormat::kBayer8},
+    {"mono16", PixelFormat::kMono16},        {"rgb8", PixelFormat::kColour8},
+    {"bgr8", PixelFormat::kColour8},         {"rgba8", PixelFormat::kColourAlpha8},
+    {"bgra8", PixelFormat::kColourAlpha8},   {"rgb16", PixelFormat::kColour16},
+    {"bgr16", PixelFormat::kColour16},       {"rgba16", PixelFormat::kColourAlpha16},
+    {"bgra16", PixelFormat::kColourAlpha16}, {"bayer_rggb8", PixelFormat::kBayer8},
     {"bayer_bggr8", PixelFormat::kBayer8},   {"bayer_gbrg8", PixelFormat::kBayer8},
     {"bayer_grbg8", PixelFormat::kBayer8},   {"bayer_rggb16", PixelFormat::kBayer16},
     {"bayer_bggr16", PixelFormat::kBayer16}, {"bayer_gbrg16", PixelFormat::kBayer16},
@@ -46,7 +46,7 @@ ImageReading refuse(ImageVerdict verdict, std::string reason) {
 }
 
 std::string sizeText(const sensor_msgs::Image& message) {
-  return std::to_string(message.width) + "x" + std::to_string(message.height);
+  return fast_edi::sizeText(message.width, message.height);
 }
 
 }  // namespace

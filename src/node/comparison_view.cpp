@@ -44,8 +44,8 @@ void ComparisonView::clear() {
 sensor_msgs::ImagePtr ComparisonView::draw(const sensor_msgs::Image& input,
                                            const sensor_msgs::Image& output,
                                            const ExposureInterval& window) const {
-  const cv::Mat blurry = colorPixels(input);
-  const cv::Mat latent = colorPixels(output);
+  const cv::Mat blurry = colourPixels(input);
+  const cv::Mat latent = colourPixels(output);
   cv::Mat drawn(blurry.size(), CV_8UC3, cv::Scalar::all(255));
   for (const std::vector<std::uint8_t>& array : arrays_) {
     const WireEvents events{array.data(), array.size() / kWireEventBytes};
@@ -62,7 +62,7 @@ sensor_msgs::ImagePtr ComparisonView::draw(const sensor_msgs::Image& input,
   }
   cv::Mat picture;
   cv::hconcat(std::vector<cv::Mat>{blurry, drawn, latent}, picture);
-  return colorMessage(output.header, picture);
+  return colourMessage(output.header, picture);
 }
 
 }  // namespace fast_edi

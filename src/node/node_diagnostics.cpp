@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "fast_edi/base/number_text.hpp"
+#include "fast_edi/base/sensor_size.hpp"
 #include "node/overload_guard.hpp"
 #include "node/status_values.hpp"
 
@@ -30,7 +31,7 @@ std::string secondsText(std::int64_t duration_ns) {
 }
 
 std::string sizeText(const SensorSize& size) {
-  return std::to_string(size.width) + "x" + std::to_string(size.height);
+  return fast_edi::sizeText(size.width, size.height);
 }
 
 /// What a user can do about frames that are passed through.
@@ -115,7 +116,8 @@ void NodeDiagnostics::collectComplaints(const NodeSnapshot& now) {
   complain("arrays refused", c.event_arrays_refused, b.event_arrays_refused,
            "event array(s)" + on_events + " with " +
                std::to_string(c.events_refused - b.events_refused) +
-               " event(s) refused: expected width and height of 1 to 32767");
+               " event(s) refused: expected width and height of 1 to " +
+               std::to_string(kMaxSide_px));
   complain("glitch", c.events_glitched, b.events_glitched,
            "event(s)" + on_events + " dropped: a time jump that the next array did not confirm");
   complain("array gap", c.event_array_gaps, b.event_array_gaps,

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "fast_edi/base/parameter_ranges.hpp"
-#include "fast_edi/events/event_stream.hpp"
+#include "fast_edi/base/sensor_size.hpp"
 #include "fast_edi/exposure/stamp_limits.hpp"
 
 namespace fast_edi::python {
@@ -23,7 +23,6 @@ struct OwnedFrame {
 };
 
 SensorSize valid(SensorSize size) {
-  constexpr int kMaxSide_px = EventStream::kMaxSide_px;
   if (size.width < 1 || size.width > kMaxSide_px || size.height < 1 || size.height > kMaxSide_px) {
     throw std::invalid_argument(
         "sensor_size is (" + std::to_string(size.width) + ", " + std::to_string(size.height) +

@@ -4,15 +4,15 @@
 #include <stdexcept>
 #include <utility>
 
-#include "fast_edi/events/event_stream.hpp"
+#include "fast_edi/base/sensor_size.hpp"
 
 namespace fast_edi::python {
 namespace {
 
 namespace py = pybind11;
 
-constexpr int kColorSamples = 3;
-constexpr int kColorAlphaSamples = 4;
+constexpr int kColourSamples = 3;
+constexpr int kColourAlphaSamples = 4;
 
 std::string shapeText(const py::array& array) {
   std::string text = "(";
@@ -38,10 +38,10 @@ PixelFormat formatOf(const py::array& array, bool bayer) {
         return wide ? PixelFormat::kBayer16 : PixelFormat::kBayer8;
       }
       return wide ? PixelFormat::kMono16 : PixelFormat::kMono8;
-    case kColorSamples:
-      return wide ? PixelFormat::kColor16 : PixelFormat::kColor8;
-    case kColorAlphaSamples:
-      return wide ? PixelFormat::kColorAlpha16 : PixelFormat::kColorAlpha8;
+    case kColourSamples:
+      return wide ? PixelFormat::kColour16 : PixelFormat::kColour8;
+    case kColourAlphaSamples:
+      return wide ? PixelFormat::kColourAlpha16 : PixelFormat::kColourAlpha8;
     default:
       refuseShape(array, "1, 3 or 4 samples for each pixel");
   }
@@ -69,8 +69,8 @@ ImageView imageView(py::array& array, bool bayer) {
   ImageView view;
   view.format = formatOf(array, bayer);
   for (int i = 0; i < 2; ++i) {
-    if (array.shape(i) < 1 || array.shape(i) > EventStream::kMaxSide_px) {
-      refuseShape(array, "height and width of 1.." + std::to_string(EventStream::kMaxSide_px));
+    if (array.shape(i) < 1 || array.shape(i) > kMaxSide_px) {
+      refuseShape(array, "height and width of 1.." + std::to_string(kMaxSide_px));
     }
   }
   if (!readableInPlace(array)) {

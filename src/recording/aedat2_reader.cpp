@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "fast_edi/base/sensor_size.hpp"
 #include "fast_edi/exposure/stamp_limits.hpp"
 #include "fast_edi/recording/byte_source.hpp"
 #include "fast_edi/recording/recording_error.hpp"
@@ -157,7 +158,7 @@ class Aedat2Reader : public Recording {
     if (x < 0 || y < 0) {
       note(offset_, "an event at column " + std::to_string(address >> kColumnShift & kColumnMask) +
                         ", row " + std::to_string(address >> kRowShift & kRowMask) +
-                        ", expected one within " + sizeText());
+                        ", expected one within " + sizeText(size_.width, size_.height));
       return;
     }
     given_.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
@@ -185,7 +186,7 @@ class Aedat2Reader : public Recording {
     const int y = size_.height - 1 - static_cast<int>(address >> kRowShift & kRowMask);
     const auto sample = static_cast<std::uint16_t>(address & kSampleMask);
     if (x >= size_.width || y < 0) {
-      note(offset_, "a read of a pixel outside of " + sizeText());
+      note(offset_, "a read of a pixel outside of " + sizeText(size_.width, size_.height));
       return false;
     }
     if (read == Read::kResetRead) {
@@ -249,10 +250,6 @@ class Aedat2Reader : public Recording {
     if (!frame_->empty()) {
       note(offset_, "the recording ends within a frame");
     }
-  }
-
-  std::string sizeText() const {
-    return std::to_string(size_.width) + "x" + std::to_string(size_.height);
   }
 
   FileSource file_;

@@ -2,12 +2,13 @@
 
 #include <cstddef>
 
+#include "fast_edi/base/sensor_size.hpp"
 #include "fast_edi/exposure/stamp_limits.hpp"
 
 namespace fast_edi {
 namespace {
 
-constexpr std::uint32_t kMaxSide_px = 32'767;
+constexpr std::uint32_t kMaxSide = kMaxSide_px;
 constexpr std::size_t kMaxDistortion = 64;
 // Numbers in fields of sensor_msgs/Imu.
 constexpr std::size_t kQuaternion = 4;
@@ -23,7 +24,7 @@ std::int64_t readHeader(CdrReader& cdr) {
 }
 
 SensorSize sizeOf(std::uint32_t width, std::uint32_t height) {
-  return width <= kMaxSide_px && height <= kMaxSide_px
+  return width <= kMaxSide && height <= kMaxSide
              ? SensorSize{static_cast<int>(width), static_cast<int>(height)}
              : SensorSize{};
 }

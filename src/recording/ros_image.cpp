@@ -1,4 +1,5 @@
 #include "recording/ros_image.hpp"
+#include "fast_edi/base/sensor_size.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +8,7 @@
 namespace fast_edi {
 namespace {
 
-constexpr std::uint32_t kMaxSide_px = 32'767;
+constexpr std::uint32_t kMaxSide = kMaxSide_px;
 /// Longest name of an encoding that is worth printing.
 constexpr std::size_t kMaxPrinted = 32;
 
@@ -49,8 +50,7 @@ std::string packImage(const RosImage& image, std::vector<std::uint8_t>& pixels) 
            "\", expected mono8, 8UC1, mono16, or rgb, bgr, rgba, bgra or bayer_* of 8 or 16 bits";
   }
   const std::string size = std::to_string(image.width) + " x " + std::to_string(image.height);
-  if (image.width == 0 || image.height == 0 || image.width > kMaxSide_px ||
-      image.height > kMaxSide_px) {
+  if (image.width == 0 || image.height == 0 || image.width > kMaxSide || image.height > kMaxSide) {
     return "a frame of " + size + " pixels, expected 1 to " + std::to_string(kMaxSide_px) +
            " a side";
   }

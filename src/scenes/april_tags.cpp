@@ -50,7 +50,7 @@ std::array<cv::Point2d, 4> PlacedTag::corners(double factor) const {
   std::array<cv::Point2d, 4> points{cv::Point2d{-half, -half}, cv::Point2d{half, -half},
                                     cv::Point2d{half, half}, cv::Point2d{-half, half}};
   for (cv::Point2d& point : points) {
-    point = center + cv::Point2d(c * point.x - s * point.y, s * point.x + c * point.y);
+    point = centre + cv::Point2d(c * point.x - s * point.y, s * point.x + c * point.y);
   }
   return points;
 }
@@ -100,9 +100,9 @@ std::vector<PlacedTag> placeTags(int count, double side_px, SensorSize view, Ran
     PlacedTag tag;
     tag.id = id;
     tag.side_px = side_px;
-    tag.center.x = (id - row * columns + 0.5) * cell_width - 0.5 * view.width +
+    tag.centre.x = (id - row * columns + 0.5) * cell_width - 0.5 * view.width +
                    0.4 * (cell_width - sheet) * unit(random);
-    tag.center.y =
+    tag.centre.y =
         (row + 0.5) * cell_height - 0.5 * view.height + 0.4 * (cell_height - sheet) * unit(random);
     tag.angle_rad = kMaxTurnRad * unit(random);
     tags.push_back(tag);

@@ -15,7 +15,7 @@ namespace fast_edi {
 /// A tag on the plane. Plane coordinates are in px of the nominal view, origin in its centre.
 struct PlacedTag {
   int id = 0;
-  cv::Point2d center;
+  cv::Point2d centre;
   double side_px = 0.0;    ///< side of the black square
   double angle_rad = 0.0;  ///< counter-clockwise from x to y
 

@@ -20,7 +20,7 @@ void layStones(cv::Mat3f& canvas, double scale, RandomEngine& random) {
   for (int y = 0; y < canvas.rows; y += course) {
     for (int x = -uniformInt(random, 0, 2 * course); x < canvas.cols;) {
       const int length = uniformInt(random, course, 3 * course);
-      cv::rectangle(canvas, cv::Rect(x, y, length, course), Color::all(0.22), cv::FILLED);
+      cv::rectangle(canvas, cv::Rect(x, y, length, course), Colour::all(0.22), cv::FILLED);
       cv::rectangle(canvas, cv::Rect(x, y, length - joint, course - joint),
                     tinted(random, uniform(random, 0.36, 0.6), 0.1), cv::FILLED);
       x += length;
@@ -33,15 +33,15 @@ void setWindow(cv::Mat3f& canvas, const cv::Rect& box, double scale, RandomEngin
   const int frame = elements(2.0, scale);
   const int bar = elements(1.2, scale);
   const cv::Rect shadow(box.x, box.br().y, box.width, elements(3.0, scale));
-  cv::rectangle(canvas, shadow, Color::all(0.15), cv::FILLED);
-  cv::rectangle(canvas, box, Color::all(uniform(random, 0.7, 0.9)), cv::FILLED);
+  cv::rectangle(canvas, shadow, Colour::all(0.15), cv::FILLED);
+  cv::rectangle(canvas, box, Colour::all(uniform(random, 0.7, 0.9)), cv::FILLED);
   const cv::Rect pane(box.x + frame, box.y + frame, box.width - 2 * frame, box.height - 2 * frame);
-  cv::rectangle(canvas, pane, Color::all(uniform(random, 0.05, 0.12)), cv::FILLED);
+  cv::rectangle(canvas, pane, Colour::all(uniform(random, 0.05, 0.12)), cv::FILLED);
   const int slope = uniformInt(random, 0, pane.width);
   const std::vector<std::vector<cv::Point>> reflection = {
       {{pane.x, pane.y}, {pane.x + slope, pane.y}, {pane.x, pane.y + pane.height / 2}}};
-  cv::fillPoly(canvas, reflection, Color::all(uniform(random, 0.2, 0.45)));
-  const Color bars = Color::all(0.75);
+  cv::fillPoly(canvas, reflection, Colour::all(uniform(random, 0.2, 0.45)));
+  const Colour bars = Colour::all(0.75);
   cv::rectangle(canvas, cv::Rect(pane.x + pane.width / 2, pane.y, bar, pane.height), bars,
                 cv::FILLED);
   cv::rectangle(canvas, cv::Rect(pane.x, pane.y + pane.height / 3, pane.width, bar), bars,

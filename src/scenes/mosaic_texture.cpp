@@ -27,17 +27,17 @@ void drawMosaic(cv::Mat3f& canvas, double scale, RandomEngine& random) {
                         cv::DIST_LABEL_PIXEL);
   double stones = 0.0;
   cv::minMaxLoc(stone, nullptr, &stones);
-  std::vector<Color> colors;
+  std::vector<Colour> colours;
   for (int i = 0; i <= static_cast<int>(stones); ++i) {
     const double luminance = std::exp(uniform(random, std::log(0.12), std::log(0.8)));
-    colors.push_back(tinted(random, luminance, 0.2));
+    colours.push_back(tinted(random, luminance, 0.2));
   }
   cv::Mat1b joint(canvas.size(), std::uint8_t{0});
   for (int y = 0; y < canvas.rows; ++y) {
     for (int x = 0; x < canvas.cols; ++x) {
-      const Color& color = colors[static_cast<std::size_t>(stone(y, x))];
-      canvas(y, x) = cv::Vec3f(static_cast<float>(color[0]), static_cast<float>(color[1]),
-                               static_cast<float>(color[2]));
+      const Colour& colour = colours[static_cast<std::size_t>(stone(y, x))];
+      canvas(y, x) = cv::Vec3f(static_cast<float>(colour[0]), static_cast<float>(colour[1]),
+                               static_cast<float>(colour[2]));
       const bool differs = stone(y, x) != stone(y, std::max(0, x - 1)) ||
                            stone(y, x) != stone(std::max(0, y - 1), x);
       joint(y, x) = differs ? 1 : 0;
@@ -46,7 +46,7 @@ void drawMosaic(cv::Mat3f& canvas, double scale, RandomEngine& random) {
   const int joint_width = std::max(1, static_cast<int>(std::lround(kJointPx * scale)));
   cv::dilate(joint, joint,
              cv::getStructuringElement(cv::MORPH_ELLIPSE, {joint_width, joint_width}));
-  canvas.setTo(Color::all(0.07), joint);
+  canvas.setTo(Colour::all(0.07), joint);
   shade(fractalNoise(canvas.size(), 60.0 * scale, 3.0 * scale, random), 0.06, canvas);
 }
 

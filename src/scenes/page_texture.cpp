@@ -35,7 +35,7 @@ void printParagraph(cv::Mat3f& canvas, const cv::Rect& box, double height, Rando
     const bool last = y + kLeadingPerHeight * height >= box.y + box.height;
     const int length = last ? uniformInt(random, letters / 4, letters) : letters;
     cv::putText(canvas(box), randomLine(random, length), {0, static_cast<int>(y) - box.y}, kFont,
-                font_scale, Color::all(kInk), thickness, cv::LINE_AA);
+                font_scale, Colour::all(kInk), thickness, cv::LINE_AA);
   }
 }
 
@@ -45,7 +45,7 @@ void drawPage(cv::Mat3f& canvas, double scale, RandomEngine& random) {
   constexpr double kColumnPx = 150.0;
   constexpr double kMarginPx = 14.0;
   constexpr double kBoxSharePercent = 20;
-  canvas.setTo(Color(0.74, 0.77, 0.78));
+  canvas.setTo(Colour(0.74, 0.77, 0.78));
   for (double x = 0.0; x < canvas.cols; x += kColumnPx * scale) {
     for (double y = 0.0; y < canvas.rows;) {
       const double height_px = uniform(random, 4.0, 9.0);
@@ -56,7 +56,7 @@ void drawPage(cv::Mat3f& canvas, double scale, RandomEngine& random) {
                            cv::Rect({}, canvas.size());
       if (uniformInt(random, 1, 100) <= kBoxSharePercent) {
         const int line = std::max(1, static_cast<int>(std::lround(1.5 * scale)));
-        cv::rectangle(canvas, box, Color::all(uniform(random, kInk, 0.5)), line);
+        cv::rectangle(canvas, box, Colour::all(uniform(random, kInk, 0.5)), line);
       } else {
         printParagraph(canvas, box, height_px * scale, random);
       }

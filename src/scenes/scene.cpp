@@ -22,7 +22,8 @@ constexpr double kMidGrey = 0.4;
 
 }  // namespace
 
-Scene::Scene(const SceneSettings& settings, SensorSize view, ColorFilter filter, std::uint64_t seed)
+Scene::Scene(const SceneSettings& settings, SensorSize view, ColourFilter filter,
+             std::uint64_t seed)
     : settings_(settings), view_(view) {
   RandomEngine tag_random = makeRandomEngine(seed, RandomStream::kTags);
   tags_ = placeTags(settings.tags, settings.tag_side_px, view, tag_random);
@@ -52,7 +53,7 @@ Scene::Scene(const SceneSettings& settings, SensorSize view, ColorFilter filter,
   }
   texels *= settings.illumination;
 
-  if (filter == ColorFilter::kNone) {
+  if (filter == ColourFilter::kNone) {
     cv::transform(texels, planes_[0], cv::Matx13d(kRed, kGreen, kBlue));
   } else {
     cv::split(texels, planes_.data());

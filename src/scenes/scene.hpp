@@ -24,7 +24,7 @@ class Scene {
 
   /// \throws std::runtime_error when the texture file cannot be read, std::invalid_argument when
   ///         the tags do not fit
-  Scene(const SceneSettings& settings, SensorSize view, ColorFilter filter, std::uint64_t seed);
+  Scene(const SceneSettings& settings, SensorSize view, ColourFilter filter, std::uint64_t seed);
 
   /// Irradiance of every pixel, 1 = a white surface at illumination 1.
   /// \param image_to_plane homography from pixel to plane coordinates

@@ -178,7 +178,7 @@ void SimulationSettings::validate() const {
     checkImu(imu);
     checkRange("tags in the room", scene.tags, 0, 0);
     checkRange("flicker frequency in the room [Hz]", scene.flicker_hz, 0.0, 0.0);
-    if (sensor.color_filter != ColorFilter::kNone) {
+    if (sensor.colour_filter != ColourFilter::kNone) {
       throw std::invalid_argument("room: expected a sensor without colour filter");
     }
   }

@@ -59,7 +59,7 @@ struct MotionSettings {
 };
 
 /// How colours reach the pixels.
-enum class ColorFilter {
+enum class ColourFilter {
   kNone,       ///< monochrome sensor
   kBayerRggb,  ///< each photosite sees one colour, in its frame and in its events alike
 };
@@ -82,7 +82,7 @@ enum class HotPixelShape {
 /// (ON events), noise makes it fire without cause and forget what it had counted until then.
 struct SensorSettings {
   SensorSize size = kDavis346Size;
-  ColorFilter color_filter = ColorFilter::kNone;
+  ColourFilter colour_filter = ColourFilter::kNone;
 
   ContrastThresholds thresholds{0.2609, 0.2415};  ///< means over the array [natural log]
   double threshold_mismatch = 0.08;   ///< standard deviation over the pixels, relative to the mean

@@ -12,75 +12,75 @@
 namespace fast_edi {
 namespace {
 
-void fillPolygon(cv::Mat3f& canvas, const std::vector<cv::Point2d>& corners, const Color& color) {
+void fillPolygon(cv::Mat3f& canvas, const std::vector<cv::Point2d>& corners, const Colour& colour) {
   std::vector<cv::Point> points;
   for (const cv::Point2d& corner : corners) {
     points.emplace_back(static_cast<int>(std::lround(corner.x)),
                         static_cast<int>(std::lround(corner.y)));
   }
-  cv::fillPoly(canvas, std::vector<std::vector<cv::Point>>{points}, color);
+  cv::fillPoly(canvas, std::vector<std::vector<cv::Point>>{points}, colour);
 }
 
-cv::Point2d polar(const cv::Point2d& center, double radius, double angle) {
-  return center + radius * cv::Point2d(std::cos(angle), std::sin(angle));
+cv::Point2d polar(const cv::Point2d& centre, double radius, double angle) {
+  return centre + radius * cv::Point2d(std::cos(angle), std::sin(angle));
 }
 
-void fillDisc(cv::Mat3f& canvas, const cv::Point2d& center, double radius, const Color& color) {
-  cv::circle(canvas, cv::Point(cv::saturate_cast<int>(center.x), cv::saturate_cast<int>(center.y)),
-             std::max(1, static_cast<int>(std::lround(radius))), color, cv::FILLED);
+void fillDisc(cv::Mat3f& canvas, const cv::Point2d& centre, double radius, const Colour& colour) {
+  cv::circle(canvas, cv::Point(cv::saturate_cast<int>(centre.x), cv::saturate_cast<int>(centre.y)),
+             std::max(1, static_cast<int>(std::lround(radius))), colour, cv::FILLED);
 }
 
 // Stickers of the poster. Every one fits into a disc of the given radius.
 
-void drawSiemensStar(cv::Mat3f& canvas, const cv::Point2d& center, double radius,
+void drawSiemensStar(cv::Mat3f& canvas, const cv::Point2d& centre, double radius,
                      RandomEngine& random) {
   constexpr int kSpokes = 9;
-  fillDisc(canvas, center, radius, Color::all(0.62));
+  fillDisc(canvas, centre, radius, Colour::all(0.62));
   const double turn = uniform(random, 0.0, CV_PI);
   for (int spoke = 0; spoke < kSpokes; ++spoke) {
     const double angle = turn + 2.0 * CV_PI * spoke / kSpokes;
-    std::vector<cv::Point2d> wedge{center};
+    std::vector<cv::Point2d> wedge{centre};
     for (int i = 0; i <= 8; ++i) {
-      wedge.push_back(polar(center, 0.94 * radius, angle + CV_PI / kSpokes * i / 8.0));
+      wedge.push_back(polar(centre, 0.94 * radius, angle + CV_PI / kSpokes * i / 8.0));
     }
-    fillPolygon(canvas, wedge, Color::all(0.2));
+    fillPolygon(canvas, wedge, Colour::all(0.2));
   }
 }
 
-void drawRings(cv::Mat3f& canvas, const cv::Point2d& center, double radius, RandomEngine& random) {
-  const Color dark = tinted(random, 0.2, 0.3);
-  const Color bright = tinted(random, 0.62, 0.15);
+void drawRings(cv::Mat3f& canvas, const cv::Point2d& centre, double radius, RandomEngine& random) {
+  const Colour dark = tinted(random, 0.2, 0.3);
+  const Colour bright = tinted(random, 0.62, 0.15);
   constexpr int kRings = 5;
   for (int ring = 0; ring < kRings; ++ring) {
-    fillDisc(canvas, center, radius * (kRings - ring) / kRings, ring % 2 == 0 ? dark : bright);
+    fillDisc(canvas, centre, radius * (kRings - ring) / kRings, ring % 2 == 0 ? dark : bright);
   }
 }
 
 /// A ball lit from the upper left: shading without edges inside, one edge around.
-void drawBall(cv::Mat3f& canvas, const cv::Point2d& center, double radius, RandomEngine& random) {
-  const Color color = tinted(random, 0.75, 0.35);
+void drawBall(cv::Mat3f& canvas, const cv::Point2d& centre, double radius, RandomEngine& random) {
+  const Colour colour = tinted(random, 0.75, 0.35);
   const cv::Rect box =
-      cv::Rect(cv::Point(static_cast<int>(center.x - radius), static_cast<int>(center.y - radius)),
-               cv::Point(static_cast<int>(center.x + radius) + 2,
-                         static_cast<int>(center.y + radius) + 2)) &
+      cv::Rect(cv::Point(static_cast<int>(centre.x - radius), static_cast<int>(centre.y - radius)),
+               cv::Point(static_cast<int>(centre.x + radius) + 2,
+                         static_cast<int>(centre.y + radius) + 2)) &
       cv::Rect(cv::Point(), canvas.size());
   for (int y = box.y; y < box.br().y; ++y) {
     for (int x = box.x; x < box.br().x; ++x) {
-      const double u = (x - center.x) / radius;
-      const double v = (y - center.y) / radius;
+      const double u = (x - centre.x) / radius;
+      const double v = (y - centre.y) / radius;
       const double r2 = u * u + v * v;
       if (r2 > 1.0) continue;
       // Lambert's law with the light at (-1, -1, 1.4) and some ambient light.
       const double facing = std::max(0.0, (-u - v + 1.4 * std::sqrt(1.0 - r2)) / 1.99);
       const double light = 0.22 + 0.78 * facing;
       canvas(y, x) =
-          cv::Vec3f(static_cast<float>(color[0] * light), static_cast<float>(color[1] * light),
-                    static_cast<float>(color[2] * light));
+          cv::Vec3f(static_cast<float>(colour[0] * light), static_cast<float>(colour[1] * light),
+                    static_cast<float>(colour[2] * light));
     }
   }
 }
 
-void drawPolygonSticker(cv::Mat3f& canvas, const cv::Point2d& center, double radius,
+void drawPolygonSticker(cv::Mat3f& canvas, const cv::Point2d& centre, double radius,
                         RandomEngine& random) {
   const int sides = uniformInt(random, 3, 6);
   const double turn = uniform(random, 0.0, 2.0 * CV_PI);
@@ -88,7 +88,7 @@ void drawPolygonSticker(cv::Mat3f& canvas, const cv::Point2d& center, double rad
   const auto corners = [&](double size) {
     std::vector<cv::Point2d> points;
     for (int i = 0; i < sides; ++i) {
-      points.push_back(polar(center, size, turn + 2.0 * CV_PI * i / sides));
+      points.push_back(polar(centre, size, turn + 2.0 * CV_PI * i / sides));
     }
     return points;
   };
@@ -96,7 +96,7 @@ void drawPolygonSticker(cv::Mat3f& canvas, const cv::Point2d& center, double rad
   fillPolygon(canvas, corners(0.6 * radius), tinted(random, dark ? 0.5 : 0.3, 0.3));
 }
 
-void drawLetter(cv::Mat3f& canvas, const cv::Point2d& center, double radius, RandomEngine& random) {
+void drawLetter(cv::Mat3f& canvas, const cv::Point2d& centre, double radius, RandomEngine& random) {
   static constexpr char kLetters[] = "ABDEFKMRSX23579";
   constexpr int kLetterCount = static_cast<int>(sizeof(kLetters)) - 1;
   const std::string text(1, kLetters[uniformInt(random, 0, kLetterCount - 1)]);
@@ -105,7 +105,7 @@ void drawLetter(cv::Mat3f& canvas, const cv::Point2d& center, double radius, Ran
   const double turn = uniform(random, -0.15, 0.15) + CV_PI / 4.0;
   std::vector<cv::Point2d> card;
   for (int i = 0; i < 4; ++i) {
-    card.push_back(polar(center, side / std::sqrt(2.0), turn + CV_PI / 2.0 * i));
+    card.push_back(polar(centre, side / std::sqrt(2.0), turn + CV_PI / 2.0 * i));
   }
   fillPolygon(canvas, card, tinted(random, inverse ? 0.22 : 0.68, 0.2));
   const int thickness = std::max(1, static_cast<int>(std::lround(0.16 * radius)));
@@ -115,13 +115,13 @@ void drawLetter(cv::Mat3f& canvas, const cv::Point2d& center, double radius, Ran
   const cv::Size extent =
       cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, font_scale, thickness, &baseline);
   cv::putText(canvas, text,
-              cv::Point(static_cast<int>(center.x) - extent.width / 2,
-                        static_cast<int>(center.y) + extent.height / 2),
-              cv::FONT_HERSHEY_SIMPLEX, font_scale, Color::all(inverse ? 0.7 : 0.18), thickness);
+              cv::Point(static_cast<int>(centre.x) - extent.width / 2,
+                        static_cast<int>(centre.y) + extent.height / 2),
+              cv::FONT_HERSHEY_SIMPLEX, font_scale, Colour::all(inverse ? 0.7 : 0.18), thickness);
 }
 
 /// Six patches from dark to bright in equal steps of the log.
-void drawGreyRamp(cv::Mat3f& canvas, const cv::Point2d& center, double radius,
+void drawGreyRamp(cv::Mat3f& canvas, const cv::Point2d& centre, double radius,
                   RandomEngine& random) {
   constexpr int kPatches = 6;
   constexpr double kDarkest = 0.14;
@@ -129,17 +129,17 @@ void drawGreyRamp(cv::Mat3f& canvas, const cv::Point2d& center, double radius,
   const double turn = uniform(random, -0.4, 0.4);
   const cv::Point2d along = polar({}, 1.8 * radius / kPatches, turn);
   const cv::Point2d down = polar({}, 0.7 * radius, turn + CV_PI / 2.0);
-  const cv::Point2d corner = center - 0.5 * kPatches * along - 0.5 * down;
+  const cv::Point2d corner = centre - 0.5 * kPatches * along - 0.5 * down;
   for (int i = 0; i < kPatches; ++i) {
     const cv::Point2d at = corner + along * i;
     fillPolygon(canvas, {at, at + along, at + along + down, at + down},
-                Color::all(kDarkest * std::pow(kRange, i / (kPatches - 1.0))));
+                Colour::all(kDarkest * std::pow(kRange, i / (kPatches - 1.0))));
   }
 }
 
 bool nearTag(const cv::Point2d& plane_px, double radius_px, const std::vector<PlacedTag>& tags) {
   return std::any_of(tags.begin(), tags.end(), [&](const PlacedTag& tag) {
-    return cv::norm(tag.center - plane_px) <
+    return cv::norm(tag.centre - plane_px) <
            radius_px + 0.5 * std::sqrt(2.0) * kTagPaperFactor * tag.side_px;
   });
 }
@@ -150,7 +150,7 @@ void drawBricks(cv::Mat3f& canvas, double scale, RandomEngine& random) {
   constexpr double kBrickWidthPx = 44.0;
   constexpr double kBrickHeightPx = 17.0;
   constexpr double kJointPx = 2.0;
-  const Color joint(0.52, 0.49, 0.46);
+  const Colour joint(0.52, 0.49, 0.46);
   canvas.setTo(joint);
   const int rows = static_cast<int>(canvas.rows / scale / kBrickHeightPx) + 1;
   const int columns = static_cast<int>(canvas.cols / scale / kBrickWidthPx) + 2;
@@ -171,7 +171,7 @@ void drawBricks(cv::Mat3f& canvas, double scale, RandomEngine& random) {
 struct Sticker {
   using Draw = void (*)(cv::Mat3f&, const cv::Point2d&, double, RandomEngine&);
   Draw draw;
-  cv::Point2d center_px;
+  cv::Point2d centre_px;
   double radius_px;
   RandomEngine random;
 };
@@ -193,14 +193,14 @@ std::vector<Sticker> placeStickers(cv::Size size_px, double density,
       // One by one, here and below: compilers choose the order in which arguments are evaluated.
       const double shift_y = uniform(place, -5.0, 5.0);
       const double shift_x = uniform(place, -5.0, 5.0);
-      const cv::Point2d center((column + 0.5 - 0.5 * columns) * kPitchPx + shift_x,
+      const cv::Point2d centre((column + 0.5 - 0.5 * columns) * kPitchPx + shift_x,
                                (row + 0.5 - 0.5 * rows) * kPitchPx + shift_y);
       const double radius = uniform(place, 12.0, 20.0);
       const int kind = uniformInt(place, 0, kKindCount - 1);
-      if (uniform(place, 0.0, 1.0) > density || nearTag(center, radius + kClearancePx, tags)) {
+      if (uniform(place, 0.0, 1.0) > density || nearTag(centre, radius + kClearancePx, tags)) {
         continue;
       }
-      stickers.push_back({kKinds[kind], center, radius, place});
+      stickers.push_back({kKinds[kind], centre, radius, place});
     }
   }
   return stickers;
@@ -218,7 +218,7 @@ void drawShadows(cv::Mat3f& canvas, double scale, const std::vector<Sticker>& st
   const cv::Point2d origin = 0.5 * cv::Point2d(size_px.width, size_px.height) + offset;
   cv::Mat1f mask = cv::Mat1f::zeros(size_px);
   for (const Sticker& sticker : stickers) {
-    cv::circle(mask, origin + sticker.center_px, cvRound(0.85 * sticker.radius_px), 1.0,
+    cv::circle(mask, origin + sticker.centre_px, cvRound(0.85 * sticker.radius_px), 1.0,
                cv::FILLED);
   }
   for (const PlacedTag& tag : tags) {
@@ -258,14 +258,14 @@ void drawPoster(cv::Mat3f& canvas, double scale, double density, const std::vect
   drawShadows(canvas, scale, stickers, tags);
   const cv::Point2d origin = 0.5 * cv::Point2d(canvas.cols, canvas.rows);
   for (Sticker& sticker : stickers) {
-    sticker.draw(canvas, origin + sticker.center_px * scale, sticker.radius_px * scale,
+    sticker.draw(canvas, origin + sticker.centre_px * scale, sticker.radius_px * scale,
                  sticker.random);
   }
   drawLightFalloff(canvas, scale);
 }
 
 void drawNatural(cv::Mat3f& canvas, double scale, RandomEngine& random) {
-  canvas.setTo(Color::all(0.4));
+  canvas.setTo(Colour::all(0.4));
   constexpr double kSmallestPx = 4.0;
   constexpr double kLargestPx = 70.0;
   const double area_px = canvas.total() / (scale * scale);
@@ -281,32 +281,32 @@ void drawNatural(cv::Mat3f& canvas, double scale, RandomEngine& random) {
     const double radius = scale / std::sqrt(a + u * (b - a));
     const double y = uniform(random, 0.0, canvas.rows);
     const double x = uniform(random, 0.0, canvas.cols);
-    const cv::Point2d center(x, y);
-    const Color color =
+    const cv::Point2d centre(x, y);
+    const Colour colour =
         tinted(random, std::exp(uniform(random, std::log(0.08), std::log(0.75))), 0.3);
     const double turn = uniform(random, 0.0, CV_PI);
     const double flatness = uniform(random, 0.5, 1.0);
     if (uniformInt(random, 0, 1) == 0) {
       cv::ellipse(canvas,
-                  cv::RotatedRect(center,
+                  cv::RotatedRect(centre,
                                   cv::Size2f(static_cast<float>(2.0 * radius),
                                              static_cast<float>(2.0 * radius * flatness)),
                                   static_cast<float>(turn * 180.0 / CV_PI)),
-                  color, cv::FILLED);
+                  colour, cv::FILLED);
     } else {
       const cv::Point2d along = polar({}, radius, turn);
       const cv::Point2d across = polar({}, radius * flatness, turn + CV_PI / 2.0);
       fillPolygon(canvas,
-                  {center - along - across, center + along - across, center + along + across,
-                   center - along + across},
-                  color);
+                  {centre - along - across, centre + along - across, centre + along + across,
+                   centre - along + across},
+                  colour);
     }
   }
   shade(fractalNoise(canvas.size(), 120.0 * scale, 2.0 * scale, random), 0.12, canvas);
 }
 
 void drawFlat(cv::Mat3f& canvas, double scale, RandomEngine& random) {
-  canvas.setTo(Color(0.5, 0.48, 0.46));
+  canvas.setTo(Colour(0.5, 0.48, 0.46));
   shade(fractalNoise(canvas.size(), 120.0 * scale, 30.0 * scale, random), 0.03, canvas);
 }
 

@@ -17,13 +17,13 @@ int uniformInt(RandomEngine& random, int low, int high) {
   return boost::random::uniform_int_distribution<int>(low, high)(random);
 }
 
-Color tinted(RandomEngine& random, double luminance, double saturation) {
+Colour tinted(RandomEngine& random, double luminance, double saturation) {
   const double hue = uniform(random, 0.0, 2.0 * CV_PI);
-  Color color;
+  Colour colour;
   for (int channel = 0; channel < 3; ++channel) {
-    color[channel] = luminance * (1.0 + saturation * std::cos(hue + 2.0 * CV_PI / 3.0 * channel));
+    colour[channel] = luminance * (1.0 + saturation * std::cos(hue + 2.0 * CV_PI / 3.0 * channel));
   }
-  return color;
+  return colour;
 }
 
 cv::Mat1f fractalNoise(cv::Size size, double coarsest, double finest, RandomEngine& random) {

@@ -8,13 +8,13 @@
 
 namespace fast_edi {
 
-using Color = cv::Scalar;
+using Colour = cv::Scalar;
 
 double uniform(RandomEngine& random, double low, double high);
 int uniformInt(RandomEngine& random, int low, int high);  ///< both bounds included
 
 /// A colour of given luminance and random, soft hue.
-Color tinted(RandomEngine& random, double luminance, double saturation);
+Colour tinted(RandomEngine& random, double luminance, double saturation);
 
 /// 1/f noise: octaves of interpolated random numbers, each half as strong as the next coarser one.
 /// \param coarsest size of the coarsest structure [canvas elements]

@@ -19,7 +19,7 @@ class PlaneWorld : public World {
  public:
   explicit PlaneWorld(const SimulationSettings& settings)
       : settings_(settings),
-        scene_(settings.scene, settings.sensor.size, settings.sensor.color_filter, settings.seed),
+        scene_(settings.scene, settings.sensor.size, settings.sensor.colour_filter, settings.seed),
         motion_(settings.motion, settings.sensor.size, settings.focalLengthPx(), settings.seed) {}
 
   void render(std::int64_t t_ns, cv::Mat1f& irradiance) const override {

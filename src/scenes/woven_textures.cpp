@@ -8,7 +8,7 @@
 namespace fast_edi {
 
 void drawClouds(cv::Mat3f& canvas, double scale, RandomEngine& random) {
-  canvas.setTo(Color::all(0.35));
+  canvas.setTo(Colour::all(0.35));
   shade(fractalNoise(canvas.size(), 100.0 * scale, 1.5 * scale, random), 0.35, canvas);
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMax8 = 255.0;
 
-cv::Mat quantize(const cv::Mat1f& dn, int bits) {
+cv::Mat quantise(const cv::Mat1f& dn, int bits) {
   cv::Mat frame;
   if (bits == 16) {
     dn.convertTo(frame, CV_16U, kDn16PerDn8);
@@ -40,11 +40,11 @@ cv::Mat FrameSensor::expose(const cv::Mat1f& irradiance) {
       value += static_cast<float>(sigma * normal(random_));
     }
   }
-  return quantize(dn, settings_.frame_bits);
+  return quantise(dn, settings_.frame_bits);
 }
 
 cv::Mat FrameSensor::noiseFree(const cv::Mat1f& irradiance) const {
-  return quantize(irradiance * settings_.white_dn, settings_.frame_bits);
+  return quantise(irradiance * settings_.white_dn, settings_.frame_bits);
 }
 
 }  // namespace fast_edi

@@ -125,9 +125,9 @@ void TagDetectorNode::publish(const sensor_msgs::Image& image,
   outputs_.publishDetections(makeTagMarkers(header, tags, reading.camera,
                                             {parameters_.detector.family, parameters_.tag_size_m}));
   if (outputs_.isAnnotatedWanted()) {
-    cv::Mat picture = colorPixels(image);
+    cv::Mat picture = colourPixels(image);
     drawTags(tags, picture);
-    outputs_.publishAnnotated(colorMessage(header, picture));
+    outputs_.publishAnnotated(colourMessage(header, picture));
   }
 }
 

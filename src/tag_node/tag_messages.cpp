@@ -1,4 +1,5 @@
 #include "tag_node/tag_messages.hpp"
+#include "fast_edi/base/sensor_size.hpp"
 
 #include <cmath>
 
@@ -17,10 +18,6 @@ constexpr float kShown = 0.8F;
 constexpr std::size_t kPlumbBobCoefficients = 5;
 constexpr std::size_t kRationalCoefficients = 8;
 constexpr std::size_t kFisheyeCoefficients = 4;
-
-std::string sizeText(long long width, long long height) {
-  return std::to_string(width) + "x" + std::to_string(height);
-}
 
 CameraReading refuse(std::string reason) {
   CameraReading reading;

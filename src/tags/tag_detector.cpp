@@ -113,7 +113,7 @@ TagDetection toTagDetection(const apriltag_detection_t& found) {
   tag.id = found.id;
   tag.hamming = found.hamming;
   tag.decision_margin = found.decision_margin;
-  tag.center = toPoint(found.c);
+  tag.centre = toPoint(found.c);
   for (std::size_t corner = 0; corner < tag.corners.size(); ++corner) {
     tag.corners[corner] = toPoint(found.p[corner]);
   }
@@ -157,7 +157,7 @@ class TagDetector::Impl {
       tags.push_back(toTagDetection(*detection));
     }
     std::sort(tags.begin(), tags.end(), [](const TagDetection& a, const TagDetection& b) {
-      return std::tie(a.id, a.center.x, a.center.y) < std::tie(b.id, b.center.x, b.center.y);
+      return std::tie(a.id, a.centre.x, a.centre.y) < std::tie(b.id, b.centre.x, b.centre.y);
     });
     return tags;
   }

@@ -25,9 +25,9 @@ cv::Point toFixed(const cv::Point2d& point) {
 
 void drawTags(const std::vector<TagDetection>& tags, cv::Mat& picture) {
   for (const TagDetection& tag : tags) {
-    const auto edge = [&](TagCorner from, TagCorner to, const cv::Scalar& color) {
-      cv::line(picture, toFixed(tag.corners[from]), toFixed(tag.corners[to]), color, 1, cv::LINE_AA,
-               kFractionBits);
+    const auto edge = [&](TagCorner from, TagCorner to, const cv::Scalar& colour) {
+      cv::line(picture, toFixed(tag.corners[from]), toFixed(tag.corners[to]), colour, 1,
+               cv::LINE_AA, kFractionBits);
     };
     edge(kBottomRight, kTopRight, kOutline);
     edge(kTopRight, kTopLeft, kOutline);
@@ -35,7 +35,7 @@ void drawTags(const std::vector<TagDetection>& tags, cv::Mat& picture) {
     edge(kBottomLeft, kBottomRight, kLowerEdge);
     const std::string text = std::to_string(tag.id);
     const cv::Size size = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kIdScale, 1, nullptr);
-    const cv::Point2d corner = tag.center + cv::Point2d(-0.5 * size.width, 0.5 * size.height);
+    const cv::Point2d corner = tag.centre + cv::Point2d(-0.5 * size.width, 0.5 * size.height);
     cv::putText(picture, text, corner, cv::FONT_HERSHEY_SIMPLEX, kIdScale, kId, 1, cv::LINE_AA);
   }
 }

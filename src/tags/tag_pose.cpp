@@ -20,7 +20,7 @@ int quarterTurns(const std::array<cv::Point2d, 4>& corners) {
 }
 
 /// Corners on the plane at distance 1 before a camera without distortion.
-std::vector<cv::Point2d> normalized(const std::vector<cv::Point2d>& found,
+std::vector<cv::Point2d> normalised(const std::vector<cv::Point2d>& found,
                                     const CameraModel& camera) {
   const cv::Matx33d matrix(camera.fx_px, 0.0, camera.cx_px, 0.0, camera.fy_px, camera.cy_px, 0.0,
                            0.0, 1.0);
@@ -50,7 +50,7 @@ std::optional<TagPose> estimateTagPose(const std::array<cv::Point2d, 4>& corners
       {-half, half, 0.0}, {half, half, 0.0}, {half, -half, 0.0}, {-half, -half, 0.0}};
   cv::Vec3d rotation;
   cv::Vec3d translation;
-  if (!cv::solvePnP(square, normalized(found, camera), cv::Matx33d::eye(), cv::noArray(), rotation,
+  if (!cv::solvePnP(square, normalised(found, camera), cv::Matx33d::eye(), cv::noArray(), rotation,
                     translation, false, cv::SOLVEPNP_IPPE_SQUARE)) {
     return std::nullopt;
   }

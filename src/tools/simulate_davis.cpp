@@ -39,7 +39,7 @@
 
 namespace {
 
-using fast_edi::ColorFilter;
+using fast_edi::ColourFilter;
 using fast_edi::DavisSimulator;
 using fast_edi::Event;
 using fast_edi::EventArray;
@@ -347,7 +347,7 @@ void applyEncoding(const std::string& encoding, SensorSettings& sensor) {
     sensor.frame_bits = 16;
   } else if (encoding == encodings::BAYER_RGGB8 || encoding == encodings::RGB8 ||
              encoding == encodings::BGR8) {
-    sensor.color_filter = ColorFilter::kBayerRggb;
+    sensor.colour_filter = ColourFilter::kBayerRggb;
   } else if (encoding != encodings::MONO8) {
     throw std::invalid_argument(
         "--encoding: expected mono8, mono16, bayer_rggb8, rgb8 or bgr8, got \"" + encoding + "\"");

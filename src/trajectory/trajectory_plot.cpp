@@ -22,8 +22,8 @@ constexpr int kMarkPx = 5;
 const cv::Scalar kWhite(255, 255, 255);
 const cv::Scalar kBlack(0, 0, 0);
 const cv::Scalar kGrid(225, 225, 225);
-const cv::Scalar kTruthColor(115, 158, 0);
-const cv::Scalar kEstimateColor(0, 94, 213);
+const cv::Scalar kTruthColour(115, 158, 0);
+const cv::Scalar kEstimateColour(0, 94, 213);
 
 /// From metres to pixels, the same for both axes; y goes up.
 struct TopView {
@@ -80,34 +80,34 @@ void drawGrid(const TopView& view, cv::Mat& canvas) {
 }
 
 void drawTrajectory(const TopView& view, const std::vector<Eigen::Vector3d>& points,
-                    const cv::Scalar& color, cv::Mat& canvas) {
+                    const cv::Scalar& colour, cv::Mat& canvas) {
   std::vector<cv::Point> line;
   for (const Eigen::Vector3d& point : points) {
     line.push_back(view.at(point.x(), point.y()));
   }
-  cv::polylines(canvas, line, false, color, 1, cv::LINE_AA);
-  cv::circle(canvas, line.front(), kMarkPx, color, cv::FILLED, cv::LINE_AA);
-  cv::drawMarker(canvas, line.back(), color, cv::MARKER_TILTED_CROSS, 3 * kMarkPx, 2, cv::LINE_AA);
+  cv::polylines(canvas, line, false, colour, 1, cv::LINE_AA);
+  cv::circle(canvas, line.front(), kMarkPx, colour, cv::FILLED, cv::LINE_AA);
+  cv::drawMarker(canvas, line.back(), colour, cv::MARKER_TILTED_CROSS, 3 * kMarkPx, 2, cv::LINE_AA);
 }
 
 }  // namespace
 
 cv::Mat topViewPlot(const std::string& title, const TrajectoryError& error) {
   cv::Mat canvas(kHeaderPx + kSidePx, kSidePx + kMarginPx, CV_8UC3, kWhite);
-  const auto write = [&canvas](const std::string& text, cv::Point at, const cv::Scalar& color) {
-    cv::putText(canvas, text, at, kFont, kTextScale, color, 1, cv::LINE_AA);
+  const auto write = [&canvas](const std::string& text, cv::Point at, const cv::Scalar& colour) {
+    cv::putText(canvas, text, at, kFont, kTextScale, colour, 1, cv::LINE_AA);
   };
   write(title, {kMarginPx, kLineHeightPx}, kBlack);
-  write("truth", {kMarginPx, 2 * kLineHeightPx}, kTruthColor);
-  write("estimate", {kMarginPx + 60, 2 * kLineHeightPx}, kEstimateColor);
+  write("truth", {kMarginPx, 2 * kLineHeightPx}, kTruthColour);
+  write("estimate", {kMarginPx + 60, 2 * kLineHeightPx}, kEstimateColour);
   write("from above [m]; dot: start, cross: end", {kMarginPx + 150, 2 * kLineHeightPx}, kBlack);
   if (error.truth.empty()) {
     return canvas;
   }
   const TopView view(error);
   drawGrid(view, canvas);
-  drawTrajectory(view, error.truth, kTruthColor, canvas);
-  drawTrajectory(view, error.estimate, kEstimateColor, canvas);
+  drawTrajectory(view, error.truth, kTruthColour, canvas);
+  drawTrajectory(view, error.estimate, kEstimateColour, canvas);
   return canvas;
 }
 

@@ -1,4 +1,5 @@
 /// \file
+/// Trajectories from above, drawn with OpenCV, which is there anyway: no other tool is needed.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
 #include "validation/stream_checks.hpp"
+#include "fast_edi/base/sensor_size.hpp"
 
 #include <cstdlib>
 #include <map>
@@ -14,10 +15,6 @@ constexpr double kLeastUnorderedPart = 1e-5;
 
 unsigned long long count(std::uint64_t value) {
   return value;
-}
-
-std::string sizeText(SensorSize size) {
-  return textOf("%dx%d", size.width, size.height);
 }
 
 void checkSizes(const RecordingSurvey& survey, std::vector<Finding>& findings) {
@@ -49,8 +46,8 @@ void checkSizes(const RecordingSurvey& survey, std::vector<Finding>& findings) {
     const auto& frame = frame_sizes.begin()->first;
     const auto& events = survey.eventSizes().begin()->first;
     findings.push_back({"sizes-differ", "event arrays and frames of the same size",
-                        "frames " + sizeText({frame.first, frame.second}) + ", event arrays " +
-                            sizeText({events.first, events.second}),
+                        "frames " + sizeText(frame.first, frame.second) + ", event arrays " +
+                            sizeText(events.first, events.second),
                         "driver: whole sensor for frames (aps_roi_...) and events; such frames "
                         "are passed through"});
   }
@@ -62,10 +59,11 @@ void checkSizes(const RecordingSurvey& survey, std::vector<Finding>& findings) {
   }
   const EventStatistics* statistics = survey.statistics();
   if (statistics != nullptr && statistics->outside() > 0) {
-    findings.push_back({"events-outside", "all events on the sensor",
-                        textOf("%llu events outside %s", count(statistics->outside()),
-                               sizeText(statistics->size()).c_str()),
-                        "record again with the right sensor size; these events are dropped"});
+    findings.push_back(
+        {"events-outside", "all events on the sensor",
+         textOf("%llu events outside %s", count(statistics->outside()),
+                sizeText(statistics->size().width, statistics->size().height).c_str()),
+         "record again with the right sensor size; these events are dropped"});
   }
 }
 

@@ -2,10 +2,10 @@
 /// std_msgs/Header and dvs_msgs/EventArray lie on the wire.
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <vector>
 
+#include "fast_edi/base/sensor_size.hpp"
 #include "fuzz/event_intake.hpp"
 
 namespace {
@@ -31,7 +31,7 @@ std::optional<DecodedArray> decode(std::vector<std::uint8_t>& message) {
   if (!count || *count > (message.size() - before) / fast_edi::kWireEventBytes) {
     return std::nullopt;
   }
-  constexpr std::uint32_t kMaxSide = std::numeric_limits<std::int16_t>::max();
+  constexpr std::uint32_t kMaxSide = fast_edi::kMaxSide_px;
   fast_edi::SensorSize size;
   if (*width <= kMaxSide && *height <= kMaxSide) {
     size = {static_cast<int>(*width), static_cast<int>(*height)};

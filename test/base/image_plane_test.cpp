@@ -26,7 +26,7 @@ TEST(ImagePlane, ReadsOneChannelOfColours) {
   const std::vector<std::uint8_t> bytes{1,  2,  3,  4,  5,  6,  7,  8,  9,
                                         11, 12, 13, 14, 15, 16, 17, 18, 19};
   std::vector<float> plane(6);
-  loadPlane({bytes.data(), kSize, 9, PixelFormat::kColor8}, 1, plane.data());
+  loadPlane({bytes.data(), kSize, 9, PixelFormat::kColour8}, 1, plane.data());
   EXPECT_THAT(plane, ElementsAre(2.0F, 5.0F, 8.0F, 12.0F, 15.0F, 18.0F));
 }
 
@@ -45,16 +45,16 @@ TEST(ImagePlane, WritesRoundedAndNothingElse) {
   EXPECT_THAT(bytes, ElementsAre(0, 0, 1, 99, 254, 255, 255, 99));
 
   std::vector<std::uint8_t> colours(18, 99);
-  storePlane(plane.data(), 2, {colours.data(), kSize, 9, PixelFormat::kColor8});
+  storePlane(plane.data(), 2, {colours.data(), kSize, 9, PixelFormat::kColour8});
   EXPECT_THAT(colours,
               ElementsAre(99, 99, 0, 99, 99, 0, 99, 99, 1, 99, 99, 254, 99, 99, 255, 99, 99, 255));
 }
 
 TEST(ImagePlane, WritesWhatItRead) {
   for (const PixelFormat format :
-       {PixelFormat::kMono8, PixelFormat::kBayer8, PixelFormat::kMono16, PixelFormat::kColor8,
-        PixelFormat::kBayer16, PixelFormat::kColor16, PixelFormat::kColorAlpha8,
-        PixelFormat::kColorAlpha16}) {
+       {PixelFormat::kMono8, PixelFormat::kBayer8, PixelFormat::kMono16, PixelFormat::kColour8,
+        PixelFormat::kBayer16, PixelFormat::kColour16, PixelFormat::kColourAlpha8,
+        PixelFormat::kColourAlpha16}) {
     const auto step = static_cast<std::size_t>(kSize.width * bytesPerPixel(format));
     std::vector<std::uint8_t> bytes;
     while (bytes.size() < 2 * step) {

@@ -11,23 +11,23 @@ TEST(Image, KnowsTheBytesOfAPixel) {
   EXPECT_EQ(bytesPerPixel(PixelFormat::kMono8), 1);
   EXPECT_EQ(bytesPerPixel(PixelFormat::kBayer8), 1);
   EXPECT_EQ(bytesPerPixel(PixelFormat::kMono16), 2);
-  EXPECT_EQ(bytesPerPixel(PixelFormat::kColor8), 3);
+  EXPECT_EQ(bytesPerPixel(PixelFormat::kColour8), 3);
   EXPECT_EQ(channels(PixelFormat::kMono16), 1);
-  EXPECT_EQ(channels(PixelFormat::kColor8), 3);
+  EXPECT_EQ(channels(PixelFormat::kColour8), 3);
   EXPECT_EQ(bytesPerPixel(PixelFormat::kBayer16), 2);
-  EXPECT_EQ(bytesPerPixel(PixelFormat::kColor16), 6);
-  EXPECT_EQ(bytesPerPixel(PixelFormat::kColorAlpha8), 4);
-  EXPECT_EQ(bytesPerPixel(PixelFormat::kColorAlpha16), 8);
-  EXPECT_EQ(channels(PixelFormat::kColorAlpha8), 3);
-  EXPECT_EQ(samplesPerPixel(PixelFormat::kColorAlpha16), 4);
+  EXPECT_EQ(bytesPerPixel(PixelFormat::kColour16), 6);
+  EXPECT_EQ(bytesPerPixel(PixelFormat::kColourAlpha8), 4);
+  EXPECT_EQ(bytesPerPixel(PixelFormat::kColourAlpha16), 8);
+  EXPECT_EQ(channels(PixelFormat::kColourAlpha8), 3);
+  EXPECT_EQ(samplesPerPixel(PixelFormat::kColourAlpha16), 4);
 }
 
 TEST(Image, GivesTheLevelOfAPixelInEightBits) {
   const std::array<std::uint8_t, 4> pixel{200, 100, 60, 255};
-  EXPECT_EQ(level8(pixel.data(), PixelFormat::kColorAlpha8), 120U) << "alpha is no light";
+  EXPECT_EQ(level8(pixel.data(), PixelFormat::kColourAlpha8), 120U) << "alpha is no light";
   EXPECT_EQ(level8(pixel.data(), PixelFormat::kMono8), 200U);
   EXPECT_EQ(level8(pixel.data(), PixelFormat::kBayer8), 200U);
-  EXPECT_EQ(level8(pixel.data(), PixelFormat::kColor8), 120U);
+  EXPECT_EQ(level8(pixel.data(), PixelFormat::kColour8), 120U);
 }
 
 TEST(Image, BringsSixteenBitsToTheSameRange) {
@@ -37,8 +37,8 @@ TEST(Image, BringsSixteenBitsToTheSameRange) {
                                             static_cast<std::uint8_t>(wide >> 8)};
     EXPECT_EQ(level8(pixel.data(), PixelFormat::kMono16), static_cast<std::size_t>(dn));
     EXPECT_EQ(level8(pixel.data(), PixelFormat::kBayer16), static_cast<std::size_t>(dn));
-    const std::array<std::uint8_t, 6> color{pixel[0], pixel[1], pixel[0], pixel[1], 0, 0};
-    EXPECT_EQ(level8(color.data(), PixelFormat::kColor16), static_cast<std::size_t>(2 * dn / 3));
+    const std::array<std::uint8_t, 6> colour{pixel[0], pixel[1], pixel[0], pixel[1], 0, 0};
+    EXPECT_EQ(level8(colour.data(), PixelFormat::kColour16), static_cast<std::size_t>(2 * dn / 3));
   }
 }
 

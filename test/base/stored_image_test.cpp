@@ -25,9 +25,9 @@ TEST(StoredImage, KeepsPixelsWithoutTheirPadding) {
 
 TEST(StoredImage, HasRoomForEachFormat) {
   for (const PixelFormat format :
-       {PixelFormat::kMono8, PixelFormat::kBayer8, PixelFormat::kMono16, PixelFormat::kColor8,
-        PixelFormat::kBayer16, PixelFormat::kColor16, PixelFormat::kColorAlpha8,
-        PixelFormat::kColorAlpha16}) {
+       {PixelFormat::kMono8, PixelFormat::kBayer8, PixelFormat::kMono16, PixelFormat::kColour8,
+        PixelFormat::kBayer16, PixelFormat::kColour16, PixelFormat::kColourAlpha8,
+        PixelFormat::kColourAlpha16}) {
     StoredImage image;
     const MutableImageView room = image.reshape(kSize, format);
     EXPECT_EQ(room.format, format);

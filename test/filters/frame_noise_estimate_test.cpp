@@ -53,7 +53,7 @@ Frame noisyFrame(PixelFormat format, double sigma_dn, unsigned seed) {
 
 TEST(FrameNoiseEstimate, IsWithinATenthOfTheTruthInEveryFormat) {
   for (const PixelFormat format :
-       {PixelFormat::kMono8, PixelFormat::kMono16, PixelFormat::kColor8, PixelFormat::kBayer8}) {
+       {PixelFormat::kMono8, PixelFormat::kMono16, PixelFormat::kColour8, PixelFormat::kBayer8}) {
     for (const double sigma : {1.0, 2.0, 4.0}) {
       FrameNoiseEstimate estimate;
       EXPECT_NEAR(static_cast<double>(estimate.of(noisyFrame(format, sigma, 3).view())), sigma,

@@ -60,7 +60,7 @@ TEST(FrameNoiseFilter, LowersReadNoise) {
 
 TEST(FrameNoiseFilter, LeavesEdgesAndSaturatedAreasAsTheyAre) {
   for (const PixelFormat format :
-       {PixelFormat::kMono8, PixelFormat::kMono16, PixelFormat::kColor8}) {
+       {PixelFormat::kMono8, PixelFormat::kMono16, PixelFormat::kColour8}) {
     Image image(format);
     for (int y = 0; y < kSize.height; ++y) {
       const std::size_t half = image.step / 2 / 6 * 6;
@@ -110,12 +110,12 @@ TEST(FrameNoiseFilter, SaturatedPixelsStay) {
 }
 
 TEST(FrameNoiseFilter, ColoursDoNotMix) {
-  Image image(PixelFormat::kColor8);
+  Image image(PixelFormat::kColour8);
   for (std::size_t i = 0; i < image.bytes.size(); ++i) {
     image.bytes[i] = static_cast<std::uint8_t>(100 + i % 3);
   }
-  Image out(PixelFormat::kColor8);
-  FrameNoiseFilter filter(kSize, PixelFormat::kColor8);
+  Image out(PixelFormat::kColour8);
+  FrameNoiseFilter filter(kSize, PixelFormat::kColour8);
   filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
   EXPECT_EQ(out.bytes, image.bytes);
 }

@@ -29,9 +29,9 @@ constexpr int kMaxCalls = 300;
 
 constexpr std::array<SensorSize, 6> kSizes{{{8, 6}, {6, 8}, {1, 1}, {10, 9}, {3, 17}, {0, 5}}};
 constexpr std::array<PixelFormat, 8> kFormats{
-    PixelFormat::kMono8,       PixelFormat::kBayer8,      PixelFormat::kMono16,
-    PixelFormat::kColor8,      PixelFormat::kBayer16,     PixelFormat::kColor16,
-    PixelFormat::kColorAlpha8, PixelFormat::kColorAlpha16};
+    PixelFormat::kMono8,        PixelFormat::kBayer8,       PixelFormat::kMono16,
+    PixelFormat::kColour8,      PixelFormat::kBayer16,      PixelFormat::kColour16,
+    PixelFormat::kColourAlpha8, PixelFormat::kColourAlpha16};
 
 DeblurParameters anyParameters(FuzzedDataProvider& input) {
   DeblurParameters parameters;

@@ -54,10 +54,10 @@ std::vector<NamedResponse> responses() {
           {"uneven table", CameraResponse::fromTable(unevenTable())}};
 }
 
-constexpr PixelFormat kFormats[] = {PixelFormat::kMono8,       PixelFormat::kBayer8,
-                                    PixelFormat::kMono16,      PixelFormat::kColor8,
-                                    PixelFormat::kBayer16,     PixelFormat::kColor16,
-                                    PixelFormat::kColorAlpha8, PixelFormat::kColorAlpha16};
+constexpr PixelFormat kFormats[] = {PixelFormat::kMono8,        PixelFormat::kBayer8,
+                                    PixelFormat::kMono16,       PixelFormat::kColour8,
+                                    PixelFormat::kBayer16,      PixelFormat::kColour16,
+                                    PixelFormat::kColourAlpha8, PixelFormat::kColourAlpha16};
 
 int levelsOf(PixelFormat format) {
   return bytesPerSample(format) == 2 ? kLevels16 : kLevels8;
@@ -268,8 +268,8 @@ TEST(CameraResponse, EveryPixelHasItsOwnGainAndColoursShareIt) {
   for (std::size_t i = 0; i < gain.size(); ++i) {
     gain[i] = 0.5F + static_cast<float>(i) / static_cast<float>(gain.size());
   }
-  const Image in = randomImage(size, PixelFormat::kColor8, 3);
-  Image out(size, PixelFormat::kColor8);
+  const Image in = randomImage(size, PixelFormat::kColour8, 3);
+  Image out(size, PixelFormat::kColour8);
   CameraResponse::linear().applyGain(in.view(), gain.data(), out.mutableView());
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {

@@ -92,8 +92,8 @@ TEST(LatentImage, OneSaturatedChannelIsNoSaturatedPixel) {
   std::uint8_t latent[3] = {};
   const std::uint16_t counts[2] = {1, 0};
   float gain = 0.6F;
-  image.write({blurry, kOne, 3, PixelFormat::kColor8}, &gain, {counts, {0.25, 0.25}},
-              CameraResponse::linear(), {latent, kOne, 3, PixelFormat::kColor8});
+  image.write({blurry, kOne, 3, PixelFormat::kColour8}, &gain, {counts, {0.25, 0.25}},
+              CameraResponse::linear(), {latent, kOne, 3, PixelFormat::kColour8});
   EXPECT_LT(latent[1], 130);
 }
 

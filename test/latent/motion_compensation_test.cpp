@@ -146,7 +146,7 @@ TEST(MotionCompensation, DoesTheSameInEachFormat) {
   }
   EXPECT_LT(error(wide, grey.plane()), 0.6);
   const Image colour =
-      compensated(imageOf(reference, PixelFormat::kColor8), imageOf(noisy, PixelFormat::kColor8));
+      compensated(imageOf(reference, PixelFormat::kColour8), imageOf(noisy, PixelFormat::kColour8));
   for (int channel = 0; channel < 3; ++channel) {
     EXPECT_LT(error(colour.plane(channel), truth), 1.5);
   }

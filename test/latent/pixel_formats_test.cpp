@@ -97,8 +97,8 @@ PixelFormat greyOf(PixelFormat format) {
 }
 
 TEST(PixelFormats, EachColourIsThatOfAGreyFrame) {
-  for (const PixelFormat format : {PixelFormat::kColor8, PixelFormat::kColor16,
-                                   PixelFormat::kColorAlpha8, PixelFormat::kColorAlpha16}) {
+  for (const PixelFormat format : {PixelFormat::kColour8, PixelFormat::kColour16,
+                                   PixelFormat::kColourAlpha8, PixelFormat::kColourAlpha16}) {
     const std::vector<int> all = hasAlpha(format) ? std::vector<int>{0, 1, 2, 3}  //
                                                   : std::vector<int>{0, 1, 2};
     const auto outputs = deblurred(all, format);
@@ -119,7 +119,7 @@ TEST(PixelFormats, EachColourIsThatOfAGreyFrame) {
 }
 
 TEST(PixelFormats, AlphaPassesThroughUnchanged) {
-  for (const PixelFormat format : {PixelFormat::kColorAlpha8, PixelFormat::kColorAlpha16}) {
+  for (const PixelFormat format : {PixelFormat::kColourAlpha8, PixelFormat::kColourAlpha16}) {
     const auto outputs = deblurred({0, 1, 2, 3}, format);
     for (std::size_t i = 0; i < outputs.size(); ++i) {
       EXPECT_EQ(planeOf(outputs[i].pixels, 3, format),

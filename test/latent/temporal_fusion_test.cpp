@@ -114,7 +114,7 @@ TEST_F(TemporalFusionTest, BeginsAnew) {
 TEST_F(TemporalFusionTest, DoesTheSameInEachFormat) {
   event(50, 0, 0, true);
   for (const PixelFormat format :
-       {PixelFormat::kBayer8, PixelFormat::kMono16, PixelFormat::kColor8}) {
+       {PixelFormat::kBayer8, PixelFormat::kMono16, PixelFormat::kColour8}) {
     const int dn = format == PixelFormat::kMono16 ? kDn16PerDn8 : 1;
     TemporalFusion fusion;
     StoredImage image;

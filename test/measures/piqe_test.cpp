@@ -69,10 +69,10 @@ TEST(NormalizedCoefficientsTest, OfOneBrightPixelAreThoseByHand) {
   for (int i = -3; i <= 3; ++i) {
     sum += std::exp(-i * i / (2.0 * 49.0 / 36.0));
   }
-  const double center_weight = 1.0 / (sum * sum);
-  const double mean = 50.0 + 100.0 * center_weight;
-  const double deviation = 100.0 * std::sqrt(center_weight * (1.0 - center_weight));
-  const cv::Mat1d coefficients = normalizedCoefficients(image);
+  const double centre_weight = 1.0 / (sum * sum);
+  const double mean = 50.0 + 100.0 * centre_weight;
+  const double deviation = 100.0 * std::sqrt(centre_weight * (1.0 - centre_weight));
+  const cv::Mat1d coefficients = normalisedCoefficients(image);
   EXPECT_NEAR(coefficients(10, 10), (150.0 - mean) / (deviation + 1.0), 1e-6);
   EXPECT_NEAR(coefficients(2, 2), 0.0, 1e-6) << "out of the window's reach";
 }

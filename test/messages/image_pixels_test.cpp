@@ -71,14 +71,16 @@ TEST(ImagePixelsTest, NothingIsCopiedWithoutNeed) {
 }
 
 TEST(ImagePixelsTest, ColourIsBlueFirst) {
-  EXPECT_EQ(colorPixels(imageOf("rgb8", {1, 2, 3, 4, 5, 6})).at<cv::Vec3b>(1, 1),
+  EXPECT_EQ(colourPixels(imageOf("rgb8", {1, 2, 3, 4, 5, 6})).at<cv::Vec3b>(1, 1),
             cv::Vec3b(6, 5, 4));
-  EXPECT_EQ(colorPixels(imageOf("rgba8", {1, 2, 3, 9, 4, 5, 6, 9})).at<cv::Vec3b>(1, 1),
+  EXPECT_EQ(colourPixels(imageOf("rgba8", {1, 2, 3, 9, 4, 5, 6, 9})).at<cv::Vec3b>(1, 1),
             cv::Vec3b(6, 5, 4));
-  EXPECT_EQ(colorPixels(imageOf("bgr16", {1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6})).at<cv::Vec3b>(1, 1),
-            cv::Vec3b(4, 5, 6));
-  EXPECT_EQ(colorPixels(imageOf("mono8", {10, 200})).at<cv::Vec3b>(1, 1), cv::Vec3b(200, 200, 200));
-  EXPECT_EQ(colorPixels(imageOf("8UC1", {10, 200})).at<cv::Vec3b>(0, 0), cv::Vec3b(10, 10, 10));
+  EXPECT_EQ(
+      colourPixels(imageOf("bgr16", {1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6})).at<cv::Vec3b>(1, 1),
+      cv::Vec3b(4, 5, 6));
+  EXPECT_EQ(colourPixels(imageOf("mono8", {10, 200})).at<cv::Vec3b>(1, 1),
+            cv::Vec3b(200, 200, 200));
+  EXPECT_EQ(colourPixels(imageOf("8UC1", {10, 200})).at<cv::Vec3b>(0, 0), cv::Vec3b(10, 10, 10));
 }
 
 TEST(ImagePixelsTest, BayerPatternsAreTold) {
@@ -99,7 +101,7 @@ TEST(ImagePixelsTest, BayerPatternsAreTold) {
         image.data[static_cast<std::size_t>(y * 8 + x)] = 200;
       }
     }
-    EXPECT_EQ(colorPixels(image).at<cv::Vec3b>(4, 4), cv::Vec3b(0, 0, 200)) << encoding;
+    EXPECT_EQ(colourPixels(image).at<cv::Vec3b>(4, 4), cv::Vec3b(0, 0, 200)) << encoding;
     EXPECT_NEAR(greyPixels(image).at<std::uint8_t>(4, 4), 60, 1) << encoding;
   }
 }
@@ -107,21 +109,21 @@ TEST(ImagePixelsTest, BayerPatternsAreTold) {
 TEST(ImagePixelsTest, RefusesWhatIsNotDeblurred) {
   const sensor_msgs::Image image = imageOf("32FC1", std::vector<std::uint8_t>(8, 0));
   EXPECT_THROW(greyPixels(image), std::invalid_argument);
-  EXPECT_THROW(colorPixels(image), std::invalid_argument);
+  EXPECT_THROW(colourPixels(image), std::invalid_argument);
 }
 
 TEST(ImagePixelsTest, MessagesHoldPackedRows) {
   std_msgs::Header header;
   header.frame_id = "camera";
   const cv::Mat wide(3, 5, CV_8UC3, cv::Scalar(1, 2, 3));
-  const sensor_msgs::ImagePtr message = colorMessage(header, wide.colRange(1, 4));
+  const sensor_msgs::ImagePtr message = colourMessage(header, wide.colRange(1, 4));
   EXPECT_EQ(message->header.frame_id, "camera");
   EXPECT_EQ(message->encoding, "bgr8");
   EXPECT_EQ(message->height, 3U);
   EXPECT_EQ(message->width, 3U);
   EXPECT_EQ(message->step, 9U);
   ASSERT_EQ(message->data.size(), 27U);
-  EXPECT_EQ(colorPixels(*message).at<cv::Vec3b>(2, 2), cv::Vec3b(1, 2, 3));
+  EXPECT_EQ(colourPixels(*message).at<cv::Vec3b>(2, 2), cv::Vec3b(1, 2, 3));
 }
 
 }  // namespace

@@ -40,11 +40,11 @@ std::string encodingOf(const ScheduledMessage& frame) {
   const std::map<PixelFormat, std::string> names{{PixelFormat::kMono8, encodings::MONO8},
                                                  {PixelFormat::kBayer8, encodings::BAYER_GRBG8},
                                                  {PixelFormat::kMono16, encodings::MONO16},
-                                                 {PixelFormat::kColor8, encodings::RGB8},
+                                                 {PixelFormat::kColour8, encodings::RGB8},
                                                  {PixelFormat::kBayer16, encodings::BAYER_RGGB16},
-                                                 {PixelFormat::kColor16, encodings::BGR16},
-                                                 {PixelFormat::kColorAlpha8, encodings::RGBA8},
-                                                 {PixelFormat::kColorAlpha16, encodings::BGRA16}};
+                                                 {PixelFormat::kColour16, encodings::BGR16},
+                                                 {PixelFormat::kColourAlpha8, encodings::RGBA8},
+                                                 {PixelFormat::kColourAlpha16, encodings::BGRA16}};
   return names.at(frame.format);
 }
 

@@ -32,9 +32,9 @@ constexpr std::uint64_t kSchedules = 300;
 
 PixelFormat anyFormat(Random& random) {
   constexpr std::array<PixelFormat, 8> kFormats{
-      PixelFormat::kMono8,       PixelFormat::kBayer8,      PixelFormat::kMono16,
-      PixelFormat::kColor8,      PixelFormat::kBayer16,     PixelFormat::kColor16,
-      PixelFormat::kColorAlpha8, PixelFormat::kColorAlpha16};
+      PixelFormat::kMono8,        PixelFormat::kBayer8,       PixelFormat::kMono16,
+      PixelFormat::kColour8,      PixelFormat::kBayer16,      PixelFormat::kColour16,
+      PixelFormat::kColourAlpha8, PixelFormat::kColourAlpha16};
   return chance(random, 60) ? PixelFormat::kMono8
                             : kFormats[static_cast<std::size_t>(uniform(random, 0, 7))];
 }

@@ -33,7 +33,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr std::uint32_t kQueue = 100;
-const cv::Point2d kTagCenter(150.0, 120.0);
+const cv::Point2d kTagCentre(150.0, 120.0);
 constexpr double kTagSide_px = 60.0;
 constexpr double kFocalLength_px = 330.0;
 constexpr double kTagSize_m = 0.2;  // see tag_detector.test
@@ -42,7 +42,7 @@ sensor_msgs::CameraInfo calibration() {
   sensor_msgs::CameraInfo info;
   info.width = 346;
   info.height = 260;
-  info.K = {kFocalLength_px, 0.0, kTagCenter.x, 0.0, kFocalLength_px, kTagCenter.y, 0.0, 0.0, 1.0};
+  info.K = {kFocalLength_px, 0.0, kTagCentre.x, 0.0, kFocalLength_px, kTagCentre.y, 0.0, 0.0, 1.0};
   return info;
 }
 
@@ -165,7 +165,7 @@ class TagDetectorTest : public ::testing::Test {
     return imageOf(grey, encoding, ros::Time(second_, 5000));
   }
 
-  const cv::Mat with_tag_ = frameWithTag(7, squareAt(kTagCenter, kTagSide_px));
+  const cv::Mat with_tag_ = frameWithTag(7, squareAt(kTagCentre, kTagSide_px));
   const cv::Mat without_tag_ = cv::Mat(260, 346, CV_8UC1, cv::Scalar(90));
   std::uint32_t second_ = 100;
   Client client_{"/good"};
@@ -194,8 +194,8 @@ TEST_F(TagDetectorTest, FindsTheTagAndForgetsItWhenItIsGone) {
   EXPECT_EQ(tag.header.stamp, image->header.stamp);
   EXPECT_EQ(tag.header.frame_id, "fallback");
   ASSERT_EQ(tag.points.size(), 4U);
-  EXPECT_NEAR(tag.points[0].x, kTagCenter.x - 0.5 * kTagSide_px, 0.3);
-  EXPECT_NEAR(tag.points[0].y, kTagCenter.y + 0.5 * kTagSide_px, 0.3);
+  EXPECT_NEAR(tag.points[0].x, kTagCentre.x - 0.5 * kTagSide_px, 0.3);
+  EXPECT_NEAR(tag.points[0].y, kTagCentre.y + 0.5 * kTagSide_px, 0.3);
   const auto gone = client_.markersFor(next(without_tag_));
   ASSERT_TRUE(gone);
   EXPECT_EQ(gone->markers.size(), 1U);
@@ -251,8 +251,8 @@ TEST_F(TagDetectorTest, DrawsWhatItFound) {
   EXPECT_EQ(picture->encoding, "bgr8");
   const cv::Mat drawn = cv_bridge::toCvCopy(picture)->image;
   ASSERT_EQ(drawn.size(), with_tag_.size());
-  const cv::Vec3b above = drawn.at<cv::Vec3b>(static_cast<int>(kTagCenter.y - 0.5 * kTagSide_px),
-                                              static_cast<int>(kTagCenter.x));
+  const cv::Vec3b above = drawn.at<cv::Vec3b>(static_cast<int>(kTagCentre.y - 0.5 * kTagSide_px),
+                                              static_cast<int>(kTagCentre.x));
   EXPECT_GT(above[1], above[0] + 50) << "no green outline";
 }
 

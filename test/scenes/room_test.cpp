@@ -379,7 +379,7 @@ TEST(RoomSimulatorTest, WhatBelongsToThePlaneIsRefused) {
   };
   EXPECT_THAT(messageOf([](auto& s) { s.scene.tags = 1; }), HasSubstr("tags in the room"));
   EXPECT_THAT(messageOf([](auto& s) { s.scene.flicker_hz = 100.0; }), HasSubstr("flicker"));
-  EXPECT_THAT(messageOf([](auto& s) { s.sensor.color_filter = ColorFilter::kBayerRggb; }),
+  EXPECT_THAT(messageOf([](auto& s) { s.sensor.colour_filter = ColourFilter::kBayerRggb; }),
               HasSubstr("colour filter"));
   EXPECT_THAT(messageOf([](auto& s) { s.room.length_m = 1.0; }), HasSubstr("room length"));
   EXPECT_THAT(messageOf([](auto& s) { s.imu.rate_hz = 0.0; }), HasSubstr("IMU rate"));

@@ -32,7 +32,7 @@ SceneSettings taggedScene(TextureKind texture, int tags) {
 class TagSceneTest : public testing::TestWithParam<TextureKind> {};
 
 TEST_P(TagSceneTest, AllTagsAreReadWhereTheyWerePlaced) {
-  const Scene scene(taggedScene(GetParam(), 6), kDavis346Size, ColorFilter::kNone, 11);
+  const Scene scene(taggedScene(GetParam(), 6), kDavis346Size, ColourFilter::kNone, 11);
   cv::Mat1f irradiance;
   scene.render(nominalView(kDavis346Size), 0, irradiance);
   cv::Mat1b image;
@@ -43,8 +43,8 @@ TEST_P(TagSceneTest, AllTagsAreReadWhereTheyWerePlaced) {
     const PlacedTag& tag = scene.tags()[i];
     EXPECT_EQ(found[i].id, tag.id);
     EXPECT_EQ(found[i].hamming, 0);
-    const cv::Point2d expected = tag.center + 0.5 * cv::Point2d(345, 259);
-    EXPECT_LT(cv::norm(found[i].center - expected), 0.3);
+    const cv::Point2d expected = tag.centre + 0.5 * cv::Point2d(345, 259);
+    EXPECT_LT(cv::norm(found[i].centre - expected), 0.3);
   }
 }
 
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Textures, TagSceneTest,
 
 TEST(SceneTest, TexturesDifferInTheirContrast) {
   const auto contrast = [](TextureKind kind) {
-    const Scene scene(taggedScene(kind, 0), kDavis346Size, ColorFilter::kNone, 3);
+    const Scene scene(taggedScene(kind, 0), kDavis346Size, ColourFilter::kNone, 3);
     cv::Mat1f irradiance;
     scene.render(nominalView(kDavis346Size), 0, irradiance);
     cv::Mat1f log;
@@ -75,18 +75,18 @@ TEST(SceneTest, TexturesDifferInTheirContrast) {
 TEST(SceneTest, IlluminationScalesIrradiance) {
   SceneSettings settings = taggedScene(TextureKind::kNatural, 0);
   cv::Mat1f bright;
-  Scene(settings, kDavis240cSize, ColorFilter::kNone, 3)
+  Scene(settings, kDavis240cSize, ColourFilter::kNone, 3)
       .render(nominalView(kDavis240cSize), 0, bright);
   settings.illumination = 0.1;
   cv::Mat1f dim;
-  Scene(settings, kDavis240cSize, ColorFilter::kNone, 3)
+  Scene(settings, kDavis240cSize, ColourFilter::kNone, 3)
       .render(nominalView(kDavis240cSize), 0, dim);
   EXPECT_LT(cv::norm(bright * 0.1, dim, cv::NORM_INF), 1e-5);
   EXPECT_GE(*std::min_element(bright.begin(), bright.end()), 0.0199F);
 }
 
 TEST(SceneTest, RenderingMovesWithTheCameraByFractionsOfAPixel) {
-  const Scene scene(taggedScene(TextureKind::kNatural, 0), kDavis240cSize, ColorFilter::kNone, 3);
+  const Scene scene(taggedScene(TextureKind::kNatural, 0), kDavis240cSize, ColourFilter::kNone, 3);
   const auto at = [&](double shift) {
     cv::Matx33d view = nominalView(kDavis240cSize);
     view(0, 2) += shift;
@@ -110,7 +110,7 @@ TEST(SceneTest, PictureOfTheUsersOwnFillsTheView) {
   ASSERT_TRUE(cv::imwrite(path, picture));
   SceneSettings settings;
   settings.texture_file = path;
-  const Scene scene(settings, kDavis240cSize, ColorFilter::kNone, 1);
+  const Scene scene(settings, kDavis240cSize, ColourFilter::kNone, 1);
   std::remove(path.c_str());
   cv::Mat1f irradiance;
   scene.render(nominalView(kDavis240cSize), 0, irradiance);
@@ -144,7 +144,7 @@ TEST(AprilTagsTest, TagsDoNotOverlapAndLieInView) {
       EXPECT_LT(std::abs(corner.y), 130.0);
     }
     for (std::size_t j = 0; j < i; ++j) {
-      EXPECT_GT(cv::norm(tags[i].center - tags[j].center), 40.0 * kTagPaperFactor);
+      EXPECT_GT(cv::norm(tags[i].centre - tags[j].centre), 40.0 * kTagPaperFactor);
     }
   }
 }

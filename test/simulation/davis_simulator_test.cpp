@@ -209,7 +209,7 @@ TEST(DavisSimulatorTest, BayerPixelsSeeTheirOwnColour) {
   settings.motion.kind = MotionKind::kStill;
   settings.timing.frames = 1;
   settings.scene.texture = TextureKind::kFlat;  // reddish grey: R > G > B
-  settings.sensor.color_filter = ColorFilter::kBayerRggb;
+  settings.sensor.colour_filter = ColourFilter::kBayerRggb;
   const cv::Mat1b raw = simulateSequence(settings).frames[0].sharp;
   double sums[2][2] = {};
   for (int y = 0; y < raw.rows; ++y) {

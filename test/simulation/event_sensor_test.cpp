@@ -59,9 +59,9 @@ double mean(const std::vector<float>& values) {
 }
 
 double deviation(const std::vector<float>& values) {
-  const double center = mean(values);
+  const double centre = mean(values);
   double sum = 0.0;
-  for (const float value : values) sum += (value - center) * (value - center);
+  for (const float value : values) sum += (value - centre) * (value - centre);
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 

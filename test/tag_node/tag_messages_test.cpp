@@ -93,11 +93,11 @@ TEST(ReadCameraTest, SaysWhyThereIsNoCamera) {
   EXPECT_THAT(reasonFor(info), HasSubstr("D is not finite"));
 }
 
-TagDetection tagAt(int id, cv::Point2d center) {
+TagDetection tagAt(int id, cv::Point2d centre) {
   TagDetection tag;
   tag.id = id;
-  tag.center = center;
-  tag.corners = test::squareAt(center, 40.0);
+  tag.centre = centre;
+  tag.corners = test::squareAt(centre, 40.0);
   return tag;
 }
 

@@ -54,8 +54,8 @@ TEST(TagDetectorTest, TheCentreOfTheTopLeftPixelIsTheOrigin) {
   const std::vector<TagDetection> tags =
       TagDetector().detect(test::frameWithTag(5, test::squareAt({60.0, 60.0}, 64.0), {121, 121}));
   ASSERT_EQ(tags.size(), 1U);
-  EXPECT_NEAR(tags[0].center.x, 60.0, 0.1);
-  EXPECT_NEAR(tags[0].center.y, 60.0, 0.1);
+  EXPECT_NEAR(tags[0].centre.x, 60.0, 0.1);
+  EXPECT_NEAR(tags[0].centre.y, 60.0, 0.1);
 }
 
 TEST(TagDetectorTest, SortsByIdAndCountsEach) {
@@ -98,8 +98,8 @@ TEST(TagDetectorTest, DecimatedFramesShowLargeTagsAtTheSamePlace) {
   settings.decimate = 2.0;
   const std::vector<TagDetection> tags = TagDetector(settings).detect(frame);
   ASSERT_EQ(tags.size(), 1U);
-  EXPECT_NEAR(tags[0].center.x, 120.0, 0.3);
-  EXPECT_NEAR(tags[0].center.y, 110.0, 0.3);
+  EXPECT_NEAR(tags[0].centre.x, 120.0, 0.3);
+  EXPECT_NEAR(tags[0].centre.y, 110.0, 0.3);
 }
 
 TEST(TagDetectorTest, TakesFramesOfAnySize) {
@@ -155,8 +155,8 @@ TEST(TagDetectorTest, RefusesColour) {
 
 TEST(TagDrawingTest, MarksTheOutlineAndItsLowerEdge) {
   TagDetection tag;
-  tag.center = {50.0, 50.0};
-  tag.corners = test::squareAt(tag.center, 60.0);
+  tag.centre = {50.0, 50.0};
+  tag.corners = test::squareAt(tag.centre, 60.0);
   cv::Mat picture(100, 100, CV_8UC3, cv::Scalar::all(0));
   drawTags({tag}, picture);
   EXPECT_GT(picture.at<cv::Vec3b>(20, 50)[1], 100) << "upper edge is green";

@@ -42,10 +42,10 @@ inline cv::Mat frameWithTag(int id, const std::array<cv::Point2d, 4>& corners,
 }
 
 /// Corners of an upright square.
-inline std::array<cv::Point2d, 4> squareAt(cv::Point2d center, double side) {
+inline std::array<cv::Point2d, 4> squareAt(cv::Point2d centre, double side) {
   const double half = 0.5 * side;
-  return {center + cv::Point2d(-half, half), center + cv::Point2d(half, half),
-          center + cv::Point2d(half, -half), center + cv::Point2d(-half, -half)};
+  return {centre + cv::Point2d(-half, half), centre + cv::Point2d(half, half),
+          centre + cv::Point2d(half, -half), centre + cv::Point2d(-half, -half)};
 }
 
 }  // namespace test

@@ -155,14 +155,14 @@ TEST(TrajectoryPlotTest, DrawsBothWithinThePicture) {
   const TrajectoryError error = compare(loop());
   const cv::Mat plot = topViewPlot("loop", error);
   EXPECT_EQ(plot.type(), CV_8UC3);
-  int colored = 0;
+  int coloured = 0;
   for (int y = 0; y < plot.rows; ++y) {
     for (int x = 0; x < plot.cols; ++x) {
       const cv::Vec3b pixel = plot.at<cv::Vec3b>(y, x);
-      colored += pixel[0] != pixel[2] ? 1 : 0;
+      coloured += pixel[0] != pixel[2] ? 1 : 0;
     }
   }
-  EXPECT_GT(colored, 1000);
+  EXPECT_GT(coloured, 1000);
 }
 
 }  // namespace

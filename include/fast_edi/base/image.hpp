@@ -12,30 +12,31 @@ namespace fast_edi {
 
 /// What one pixel looks like in memory. Numbers of 16 bits are little endian.
 enum class PixelFormat {
-  kMono8,         ///< one byte
-  kBayer8,        ///< one byte, a photosite of a 2 x 2 colour mosaic; its events are its own, too
-  kMono16,        ///< two bytes
-  kColor8,        ///< three interleaved bytes (rgb8 or bgr8); all three share the pixel's list
-  kBayer16,       ///< a photosite of two bytes
-  kColor16,       ///< three numbers of 16 bits
-  kColorAlpha8,   ///< kColor8 and a fourth byte, which passes through unchanged
-  kColorAlpha16,  ///< the same of 16 bits
+  kMono8,          ///< one byte
+  kBayer8,         ///< one byte, a photosite of a 2 x 2 colour mosaic; its events are its own, too
+  kMono16,         ///< two bytes
+  kColour8,        ///< three interleaved bytes (rgb8 or bgr8); all three share the pixel's list
+  kBayer16,        ///< a photosite of two bytes
+  kColour16,       ///< three numbers of 16 bits
+  kColourAlpha8,   ///< kColour8 and a fourth byte, which passes through unchanged
+  kColourAlpha16,  ///< the same of 16 bits
 };
 
 constexpr bool isBayer(PixelFormat format) {
   return format == PixelFormat::kBayer8 || format == PixelFormat::kBayer16;
 }
 constexpr bool hasAlpha(PixelFormat format) {
-  return format == PixelFormat::kColorAlpha8 || format == PixelFormat::kColorAlpha16;
+  return format == PixelFormat::kColourAlpha8 || format == PixelFormat::kColourAlpha16;
 }
 /// Those that show light: without alpha.
 constexpr int channels(PixelFormat format) {
-  return format == PixelFormat::kColor8 || format == PixelFormat::kColor16 || hasAlpha(format) ? 3
-                                                                                               : 1;
+  return format == PixelFormat::kColour8 || format == PixelFormat::kColour16 || hasAlpha(format)
+             ? 3
+             : 1;
 }
 constexpr int bytesPerSample(PixelFormat format) {
   return format == PixelFormat::kMono16 || format == PixelFormat::kBayer16 ||
-                 format == PixelFormat::kColor16 || format == PixelFormat::kColorAlpha16
+                 format == PixelFormat::kColour16 || format == PixelFormat::kColourAlpha16
              ? 2
              : 1;
 }

@@ -43,7 +43,6 @@ class EventStream {
   /// \param next_event_ns the first event of the new epoch
   using ResetHandler = std::function<void(StreamReset kind, std::int64_t next_event_ns)>;
 
-  static constexpr int kMaxSide_px = 32767;
   static constexpr std::uint64_t kMostReadings = 10;
 
   /// \param counters all events_... and event_... are counted there; must outlive this object

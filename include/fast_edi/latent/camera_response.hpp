@@ -77,8 +77,8 @@ class CameraResponse {
                std::uint8_t* out) const;
   void applySamples(PixelFormat format, const std::uint8_t* in, const float* gain,
                     std::size_t count, std::uint8_t* out) const;
-  void applyColor(PixelFormat format, const std::uint8_t* in, const float* gain, std::size_t width,
-                  std::uint8_t* out) const;
+  void applyColour(PixelFormat format, const std::uint8_t* in, const float* gain, std::size_t width,
+                   std::uint8_t* out) const;
 
   double offset_dn_ = 0.0;
   std::shared_ptr<const Tables> tables_;  ///< null when linear; never changes, hence shared

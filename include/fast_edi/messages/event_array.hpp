@@ -26,6 +26,7 @@
 #include <std_msgs/Header.h>
 #include <boost/shared_ptr.hpp>
 
+#include "fast_edi/base/sensor_size.hpp"
 #include "fast_edi/base/types.hpp"
 #include "fast_edi/events/event_wire.hpp"
 #include "fast_edi/messages/steady_time.hpp"
@@ -79,7 +80,7 @@ class EventArrayView {
 /// 32767 px), which the pipeline refuses.
 template <typename Array>
 SensorSize sensorSize(const Array& array) {
-  constexpr std::uint32_t kMaxSide = std::numeric_limits<std::int16_t>::max();
+  constexpr std::uint32_t kMaxSide = kMaxSide_px;
   if (array.width > kMaxSide || array.height > kMaxSide) {
     return {};
   }
@@ -129,7 +130,7 @@ struct DefinitionTrait {
 };
 
 template <typename Array>
-struct ArraySerializer {
+struct ArraySerialiser {
   template <typename Stream>
   static void write(Stream& stream, const Array& array) {
     const WireEvents events = array.events();
@@ -219,10 +220,10 @@ namespace serialization {
 
 template <>
 struct Serializer<fast_edi::EventArray>
-    : fast_edi::event_array_detail::ArraySerializer<fast_edi::EventArray> {};
+    : fast_edi::event_array_detail::ArraySerialiser<fast_edi::EventArray> {};
 template <>
 struct Serializer<fast_edi::EventArrayView>
-    : fast_edi::event_array_detail::ArraySerializer<fast_edi::EventArrayView> {};
+    : fast_edi::event_array_detail::ArraySerialiser<fast_edi::EventArrayView> {};
 
 }  // namespace serialization
 }  // namespace ros

@@ -16,10 +16,10 @@ cv::Mat greyPixels(const sensor_msgs::Image& message);
 
 /// A copy as CV_8UC3 in OpenCV's order, blue first.
 /// \throws std::invalid_argument for an encoding that readImage() does not find supported
-cv::Mat colorPixels(const sensor_msgs::Image& message);
+cv::Mat colourPixels(const sensor_msgs::Image& message);
 
 /// A bgr8 message.
-/// \param color CV_8UC3
-sensor_msgs::ImagePtr colorMessage(const std_msgs::Header& header, const cv::Mat& color);
+/// \param colour CV_8UC3
+sensor_msgs::ImagePtr colourMessage(const std_msgs::Header& header, const cv::Mat& colour);
 
 }  // namespace fast_edi

@@ -25,7 +25,7 @@ struct TagDetection {
   int id = 0;
   int hamming = 0;                     ///< bits corrected
   double decision_margin = 0.0;        ///< mean distance of a bit from its threshold [DN]
-  cv::Point2d center;                  ///< [px]
+  cv::Point2d centre;                  ///< [px]
   std::array<cv::Point2d, 4> corners;  ///< by TagCorner [px]
 };
 
