@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "fast_edi/base/number_text.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -14,6 +16,21 @@ void printCount(std::ostream& out, std::uint64_t count, const std::string& what)
   if (count > 0) {
     out << "  " << std::setw(10) << count << "  " << what << "\n";
   }
+}
+
+void printLearned(std::ostream& out, const BagDeblurReport& report) {
+  constexpr int kThresholdDecimals = 3;
+  constexpr int kDelayDecimals = 2;
+  const double delay_ms =
+      static_cast<double>(report.event_delay_ns) / static_cast<double>(kNanosecondsPerMillisecond);
+  out << "in force at the end (learned from " << report.counters.calibration_fits
+      << " pairs of frames)\n";
+  const auto print = [&out](const std::string& value, const char* what) {
+    out << "  " << std::setw(10) << value << "  " << what << "\n";
+  };
+  print(fixedText(report.thresholds.on, kThresholdDecimals), "contrast_threshold_on");
+  print(fixedText(report.thresholds.off, kThresholdDecimals), "contrast_threshold_off");
+  print(fixedText(delay_ms, kDelayDecimals), "ms by which events lag behind the light");
 }
 
 }  // namespace
@@ -62,6 +79,9 @@ void printSummary(std::ostream& out, const BagDeblurReport& report) {
   printCount(out, counters.exposures_refused, "refused: not within 0 to 1 s");
   printCount(out, counters.exposures_surplus, "surplus");
   printCount(out, counters.exposures_missing, "missing");
+  if (counters.calibration_fits > 0) {
+    printLearned(out, report);
+  }
   out << "messages\n";
   out << "  " << std::setw(10) << report.messages << "  copied\n";
   printCount(out, report.malformed_messages, "malformed: copied, not used");
@@ -104,7 +124,10 @@ BagDeblurReport BagDeblurrer::run() {
   pipeline_.finish();
   writeOutputs(report_.last_record_time);
   report_.counters = pipeline_.counters();
-  report_.differing_clocks = pipeline_.status().differing_clocks;
+  const DeblurStatus status = pipeline_.status();
+  report_.differing_clocks = status.differing_clocks;
+  report_.thresholds = status.thresholds;
+  report_.event_delay_ns = status.event_delay_ns;
   report_.damage = reader_.damage();
   report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report_;

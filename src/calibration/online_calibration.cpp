@@ -9,6 +9,7 @@
 #include <Eigen/Cholesky>
 
 #include "base/fast_log.hpp"
+#include "fast_edi/base/parameter_ranges.hpp"
 
 namespace fast_edi {
 namespace {
@@ -34,18 +35,20 @@ constexpr double kTypicalGrey_dn = 100.0;
 constexpr double kVariancePerEvent = 0.1;
 constexpr std::size_t kLeastPixels = 50;
 
-/// Weight of the nominal values, as if that many pixels had told them by one event each ...
+/// Weight of the given values, as if that many pixels had told them by one event each ...
 constexpr double kContrastRidge = 100.0;
 /// ... or, for the delay, by one natural-log unit per millisecond each.
 constexpr double kDelayRidge = 0.1;
-/// Fixes what is not to be learned at its nominal value.
+/// Fixes what is not to be learned at its given value.
 constexpr double kFixedRidge = 1e12;
 /// Weight of what was learned before, each time a pair is added.
 constexpr double kForgetting = 0.9;
-constexpr double kLargestCorrection = 0.3;  ///< of a threshold, relative to nominal
-constexpr double kLargestDelay_ms = 5.0;    ///< of the events, in the mean
+constexpr double kLargestCorrection = 0.3;  ///< of a threshold, relative to the given one
+/// Of an edge, either way.
+constexpr double kLargestDelay_ns =
+    limits::kEventDelay.range.highest * static_cast<double>(kNanosecondsPerMicrosecond);
 /// Pairs of frames determine a threshold no better than to a few per cent. Of a correction, nothing
-/// is used up to kDoubtfulCorrection, all of it from kSureCorrection on, relative to nominal.
+/// is used up to kDoubtfulCorrection, all of it from kSureCorrection on, relative to the given one.
 constexpr double kDoubtfulCorrection = 0.06;
 constexpr double kSureCorrection = 0.1;
 /// ln 2: behind a first-order low-pass of time constant tau, events are late by tau in the mean,
@@ -93,21 +96,36 @@ double limited(double value, double lowest, double highest) {
   return std::min(std::max(value, lowest), highest);
 }
 
+/// Mean delay [ms] behind a first-order low-pass whose edges come late by \p edge_ns.
+double meanDelay(std::int64_t edge_ns) {
+  const double edge_ms =
+      static_cast<double>(edge_ns) / static_cast<double>(kNanosecondsPerMillisecond);
+  return edge_ms > 0.0 ? edge_ms / kEdgeDelayPerMeanDelay : edge_ms;
+}
+
+/// The other way round, within the limits.
+std::int64_t edgeDelay(double mean_ms) {
+  const double edge_ms = mean_ms > 0.0 ? mean_ms * kEdgeDelayPerMeanDelay : mean_ms;
+  return static_cast<std::int64_t>(
+      limited(edge_ms * static_cast<double>(kNanosecondsPerMillisecond), -kLargestDelay_ns,
+              kLargestDelay_ns));
+}
+
 /// The threshold in force for one that was found.
-double correctedThreshold(double found, double nominal) {
-  const double correction = limited(found / nominal - 1.0, -kLargestCorrection, kLargestCorrection);
+double correctedThreshold(double found, double given) {
+  const double correction = limited(found / given - 1.0, -kLargestCorrection, kLargestCorrection);
   const double sure =
       (std::abs(correction) - kDoubtfulCorrection) / (kSureCorrection - kDoubtfulCorrection);
-  return nominal * (1.0 + limited(sure, 0.0, 1.0) * correction);
+  return given * (1.0 + limited(sure, 0.0, 1.0) * correction);
 }
 
 }  // namespace
 
-OnlineCalibration::OnlineCalibration(SensorSize size, ContrastThresholds nominal, Settings settings)
+OnlineCalibration::OnlineCalibration(SensorSize size, const Calibration& given, Settings settings)
     : size_(size),
-      nominal_(nominal),
+      given_(given),
       settings_(settings),
-      in_force_{nominal, 0},
+      in_force_(given),
       log_latent_(size.pixelCount()),
       evidence_(size.pixelCount()) {
   previous_.log_latent.resize(size.pixelCount());
@@ -304,28 +322,27 @@ void OnlineCalibration::updateInForce() {
   const double contrast_ridge = settings_.contrast ? kContrastRidge : kFixedRidge;
   const double delay_ridge = settings_.delay ? kDelayRidge : kFixedRidge;
   const Eigen::Vector3d ridge(contrast_ridge, contrast_ridge, delay_ridge);
-  const Eigen::Vector3d nominal(nominal_.on, nominal_.off, 0.0);
+  const double given_delay_ms = meanDelay(given_.event_delay_ns);
+  const Eigen::Vector3d given(given_.thresholds.on, given_.thresholds.off, given_delay_ms);
   const Eigen::Matrix3d matrix = learned_.matrix + Eigen::Matrix3d(ridge.asDiagonal());
   const Eigen::Vector3d theta =
-      matrix.ldlt().solve(learned_.vector + Eigen::Vector3d(ridge.cwiseProduct(nominal)));
+      matrix.ldlt().solve(learned_.vector + Eigen::Vector3d(ridge.cwiseProduct(given)));
   if (!theta.allFinite()) {
     return;
   }
 
-  Calibration wanted{nominal_, 0};
+  Calibration wanted = given_;
   if (settings_.contrast) {
-    wanted.thresholds = {correctedThreshold(theta[0], nominal_.on),
-                         correctedThreshold(theta[1], nominal_.off)};
+    wanted.thresholds = {correctedThreshold(theta[0], given_.thresholds.on),
+                         correctedThreshold(theta[1], given_.thresholds.off)};
   }
   if (settings_.delay) {
     // That which goes with these thresholds, whether or not they are those of the fit.
-    const double delay_ms = (learned_.vector[2] - learned_.matrix(2, 0) * wanted.thresholds.on -
-                             learned_.matrix(2, 1) * wanted.thresholds.off) /
-                            (learned_.matrix(2, 2) + kDelayRidge);
-    wanted.event_delay_ns =
-        static_cast<std::int64_t>((delay_ms > 0.0 ? kEdgeDelayPerMeanDelay : 1.0) *
-                                  limited(delay_ms, -kLargestDelay_ms, kLargestDelay_ms) *
-                                  static_cast<double>(kNanosecondsPerMillisecond));
+    const double delay_ms =
+        (learned_.vector[2] - learned_.matrix(2, 0) * wanted.thresholds.on -
+         learned_.matrix(2, 1) * wanted.thresholds.off + kDelayRidge * given_delay_ms) /
+        (learned_.matrix(2, 2) + kDelayRidge);
+    wanted.event_delay_ns = edgeDelay(delay_ms);
   }
   const auto differs = [](double a, double b) {
     return std::abs(a - b) > kNoticeableCorrection * b;

@@ -20,6 +20,7 @@ void validate(const DeblurParameters& parameters) {
   validate(parameters.thresholds);
   requireWithin(limits::kExposureTime, parameters.exposure_time_ns, kUs);
   requireWithin(limits::kTimeOffset, parameters.time_offset_ns, kUs);
+  requireWithin(limits::kEventDelay, parameters.event_delay_ns, kUs);
   requireWithin(limits::kCloseTimeout, parameters.close_timeout_ns, kMs);
   requireWithin(limits::kBackwardJump, parameters.max_backward_jump_ns, kMs);
   requireWithin(limits::kForwardJump, parameters.max_forward_jump_ns, kMs);

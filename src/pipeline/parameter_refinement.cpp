@@ -8,11 +8,11 @@ namespace {
 /// Whether what was learned from the recording under \p a is what would be learned under \p b.
 bool giveTheSameCalibration(const DeblurParameters& a, const DeblurParameters& b) {
   return a.thresholds == b.thresholds && a.weighting == b.weighting && a.response == b.response &&
-         a.time_offset_ns == b.time_offset_ns && a.event_mapping == b.event_mapping &&
-         a.stamp_reference == b.stamp_reference && a.exposure_source == b.exposure_source &&
-         a.exposure_time_ns == b.exposure_time_ns && a.filter.enabled == b.filter.enabled &&
-         a.level == b.level && a.refine_contrast == b.refine_contrast &&
-         a.refine_delay == b.refine_delay;
+         a.time_offset_ns == b.time_offset_ns && a.event_delay_ns == b.event_delay_ns &&
+         a.event_mapping == b.event_mapping && a.stamp_reference == b.stamp_reference &&
+         a.exposure_source == b.exposure_source && a.exposure_time_ns == b.exposure_time_ns &&
+         a.filter.enabled == b.filter.enabled && a.level == b.level &&
+         a.refine_contrast == b.refine_contrast && a.refine_delay == b.refine_delay;
 }
 
 }  // namespace
@@ -23,14 +23,12 @@ void ParameterRefinement::setParameters(const DeblurParameters& parameters) {
   }
   requested_ = parameters;
   in_force_ = parameters;
-  if (calibration_) {
-    apply(calibration_->inForce());
-  }
+  apply(calibration_ ? calibration_->inForce() : given());
 }
 
 void ParameterRefinement::reset() {
   calibration_.reset();
-  apply({requested_.thresholds, 0});
+  apply(given());
 }
 
 bool ParameterRefinement::wantsFrame() const {
@@ -46,7 +44,7 @@ void ParameterRefinement::learn(const ImageView& blurry, const ExposureInterval&
     settings.contrast = in_force_.refine_contrast;
     settings.delay = in_force_.refine_delay;
     settings.level = levelModel(in_force_);
-    calibration_.emplace(events.lists()->size(), requested_.thresholds, settings);
+    calibration_.emplace(events.lists()->size(), given(), settings);
   }
   if (!events.covers({std::min(window.start_ns, calibration_->neededFrom()), window.end_ns})) {
     calibration_->interrupt();

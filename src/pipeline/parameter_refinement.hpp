@@ -18,13 +18,15 @@ namespace fast_edi {
 class ParameterRefinement {
  public:
   explicit ParameterRefinement(const DeblurParameters& parameters)
-      : requested_(parameters), in_force_(parameters) {}
+      : requested_(parameters), in_force_(parameters) {
+    apply(given());
+  }
 
   /// By the user.
   const DeblurParameters& requested() const { return requested_; }
   /// The same object throughout.
   const DeblurParameters& inForce() const { return in_force_; }
-  /// What was learned of the delay of events, part of inForce().time_offset_ns.
+  /// The delay of events, part of inForce().time_offset_ns.
   std::int64_t eventDelay() const { return in_force_.time_offset_ns - requested_.time_offset_ns; }
 
   /// Keeps what was learned unless it would be learned differently now.
@@ -50,6 +52,7 @@ class ParameterRefinement {
   std::size_t memoryBytes() const;
 
  private:
+  Calibration given() const { return {requested_.thresholds, requested_.event_delay_ns}; }
   void apply(const Calibration& calibration);
 
   DeblurParameters requested_;

@@ -18,6 +18,7 @@
 #include "fast_edi/bags/message_source.hpp"
 #include "fast_edi/bags/open_messages.hpp"
 #include "fast_edi/bags/topic_names.hpp"
+#include "fast_edi/config/learned_file.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "film/film_writer.hpp"
 #include "film/frame_folder.hpp"
@@ -60,6 +61,8 @@ struct Arguments {
   bool overwrite = false;
   std::string video;
   std::string frames;
+  std::string learned;
+  std::string save_learned;
   int film_rate_hz = kDefaultFilmRate_hz;
 };
 
@@ -81,6 +84,10 @@ po::options_description describeOptions(Arguments& arguments) {
       "config", po::value(&arguments.config)->value_name("YAML"),
       "parameters, e.g. cfg/davis346.yaml; not needed when both contrast thresholds are given as "
       "name:=value");
+  options.add_options()("save-learned", po::value(&arguments.save_learned)->value_name("YAML"),
+                        "file for the contrast thresholds and the event delay in force at the end")(
+      "learned", po::value(&arguments.learned)->value_name("YAML"),
+      "such a file of an earlier recording: start from these values instead of those of --config");
   tools::addTopicOptions(options, topics);
   options.add_options()("camera-info", po::value(&topics.camera_info)->value_name("TOPIC"),
                         "calibration; the sibling of --image by default, may be missing")(
@@ -190,12 +197,22 @@ void addTo(fast_edi::FrameFolder& folder, const fast_edi::BagPipeline::Output& o
   folder.add(*output.image, exposure.length() > 0 ? std::optional(exposure) : std::nullopt);
 }
 
+/// Those of --learned first, which the command line's then replace.
+std::vector<std::string> overridesOf(const Arguments& arguments) {
+  std::vector<std::string> overrides;
+  if (!arguments.learned.empty()) {
+    overrides = fast_edi::learnedOverrides(arguments.learned);
+  }
+  overrides.insert(overrides.end(), arguments.overrides.begin(), arguments.overrides.end());
+  return overrides;
+}
+
 int run(const Arguments& arguments) {
   const std::unique_ptr<fast_edi::MessageSource> recording =
       fast_edi::openMessages(arguments.inputs);
   fast_edi::MessageSource& reader = *recording;
   fast_edi::LoadedParameters parameters =
-      tools::loadParametersFor(reader, arguments.config, arguments.overrides);
+      tools::loadParametersFor(reader, arguments.config, overridesOf(arguments));
   if (!arguments.video.empty()) {
     parameters.deblur.latent.rate_hz = arguments.film_rate_hz;
   }
@@ -213,6 +230,11 @@ int run(const Arguments& arguments) {
   std::optional<fast_edi::FrameFolder> folder;
   if (!arguments.frames.empty()) {
     folder.emplace(arguments.frames, arguments.overwrite);
+  }
+  std::optional<fast_edi::LearnedFile> learned;
+  if (!arguments.save_learned.empty()) {
+    tools::requireFree(arguments.save_learned, arguments.overwrite);
+    learned.emplace(arguments.save_learned);
   }
   std::optional<fast_edi::BagWriter> writer;
   if (!arguments.output.empty()) {
@@ -241,6 +263,9 @@ int run(const Arguments& arguments) {
   if (writer) {
     writer->close();
   }
+  if (learned) {
+    learned->write(report.thresholds, report.event_delay_ns);
+  }
   if (film) {
     film->close();
   }
@@ -250,6 +275,9 @@ int run(const Arguments& arguments) {
   printSummary(std::cout, report);
   if (writer) {
     std::cout << "written: " << arguments.output << "\n";
+  }
+  if (learned) {
+    std::cout << "written: " << arguments.save_learned << "\n";
   }
   if (film) {
     printFilm(film->report(), arguments.video);

@@ -197,7 +197,8 @@ void calibrate(benchmark::State& state, Exposure& exposure) {
   time(
       state,
       [&] {
-        calibration = std::make_unique<OnlineCalibration>(exposure.size, kThresholds, settings);
+        calibration =
+            std::make_unique<OnlineCalibration>(exposure.size, Calibration{kThresholds}, settings);
         calibration->addFrame(frame(0), response, exposure.lists);
       },
       [&] { calibration->addFrame(frame(1), response, exposure.lists); });

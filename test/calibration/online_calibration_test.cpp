@@ -99,9 +99,9 @@ class RampScene {
 };
 
 /// Closes frames as the pipeline does, with what the calibration says.
-Calibration calibrated(const RampScene& scene, ContrastThresholds nominal,
+Calibration calibrated(const RampScene& scene, const Calibration& given,
                        OnlineCalibration::Settings settings, int frames = 10) {
-  OnlineCalibration calibration(kSize, nominal, settings);
+  OnlineCalibration calibration(kSize, given, settings);
   std::vector<float> gain(kSize.pixelCount());
   for (int i = 0; i < frames; ++i) {
     const Calibration now = calibration.inForce();
@@ -124,7 +124,7 @@ TEST(OnlineCalibration, FindsThresholdsThatAreTwentyPercentOff) {
   const RampScene scene(0);
   for (const double factor : {0.8, 1.2}) {
     const Calibration found =
-        calibrated(scene, {factor * kTrue.on, factor * kTrue.off}, {true, false});
+        calibrated(scene, {{factor * kTrue.on, factor * kTrue.off}}, {true, false});
     EXPECT_NEAR(found.thresholds.on / kTrue.on, 1.0, 0.04) << factor;
     EXPECT_NEAR(found.thresholds.off / kTrue.off, 1.0, 0.04) << factor;
     EXPECT_EQ(found.event_delay_ns, 0);
@@ -132,14 +132,14 @@ TEST(OnlineCalibration, FindsThresholdsThatAreTwentyPercentOff) {
 }
 
 TEST(OnlineCalibration, LeavesRightThresholdsAlone) {
-  const Calibration found = calibrated(RampScene(0), kTrue, {true, true});
+  const Calibration found = calibrated(RampScene(0), {kTrue}, {true, true});
   EXPECT_EQ(found.thresholds, kTrue);
   EXPECT_LT(std::abs(found.event_delay_ns), kMs / 5);
 }
 
 TEST(OnlineCalibration, LeavesNearlyRightThresholdsAlone) {
   const ContrastThresholds nominal{0.96 * kTrue.on, 1.04 * kTrue.off};
-  EXPECT_EQ(calibrated(RampScene(0), nominal, {true, true}).thresholds, nominal);
+  EXPECT_EQ(calibrated(RampScene(0), {nominal}, {true, true}).thresholds, nominal);
 }
 
 /// Of a delay, the part after which an edge behind a low-pass has half of its height.
@@ -149,7 +149,7 @@ double edgeDelay(std::int64_t mean_ns) {
 
 TEST(OnlineCalibration, FindsTheDelayOfTheEvents) {
   for (const std::int64_t delay_ns : {-2 * kMs, 1 * kMs, 3 * kMs}) {
-    const Calibration found = calibrated(RampScene(delay_ns), kTrue, {false, true});
+    const Calibration found = calibrated(RampScene(delay_ns), {kTrue}, {false, true});
     EXPECT_NEAR(static_cast<double>(found.event_delay_ns), edgeDelay(delay_ns),
                 0.6 * kMs);  // events of a ramp are 2 ms apart
     EXPECT_EQ(found.thresholds, kTrue);
@@ -158,23 +158,46 @@ TEST(OnlineCalibration, FindsTheDelayOfTheEvents) {
 
 TEST(OnlineCalibration, FindsBothAtOnce) {
   const Calibration found =
-      calibrated(RampScene(2 * kMs), {0.8 * kTrue.on, 0.85 * kTrue.off}, {true, true});
+      calibrated(RampScene(2 * kMs), {{0.8 * kTrue.on, 0.85 * kTrue.off}}, {true, true});
   EXPECT_NEAR(found.thresholds.on / kTrue.on, 1.0, 0.05);
   EXPECT_NEAR(found.thresholds.off / kTrue.off, 1.0, 0.05);
   EXPECT_NEAR(static_cast<double>(found.event_delay_ns), edgeDelay(2 * kMs), 0.5 * kMs);
 }
 
+TEST(OnlineCalibration, StartsFromTheGivenDelay) {
+  const Calibration given{kTrue, 2 * kMs};
+  OnlineCalibration calibration(kSize, given, {true, true});
+  EXPECT_EQ(calibration.inForce().event_delay_ns, given.event_delay_ns);
+  // A fixed one stays, whatever the frames say.
+  const Calibration fixed = calibrated(RampScene(0), given, {true, false});
+  EXPECT_EQ(fixed.event_delay_ns, given.event_delay_ns);
+}
+
+TEST(OnlineCalibration, FindsTheSameDelayFromWhereverItStarts) {
+  for (const std::int64_t given_ns : {-1 * kMs, 1 * kMs, 4 * kMs}) {
+    const Calibration found = calibrated(RampScene(3 * kMs), {kTrue, given_ns}, {false, true});
+    EXPECT_NEAR(static_cast<double>(found.event_delay_ns), edgeDelay(3 * kMs), 0.6 * kMs)
+        << given_ns;
+  }
+}
+
+TEST(OnlineCalibration, KeepsAGivenDelayThatNothingSpeaksAgainst) {
+  const std::int64_t given_ns = std::llround(edgeDelay(3 * kMs));
+  const Calibration found = calibrated(RampScene(3 * kMs), {kTrue, given_ns}, {false, true}, 2);
+  EXPECT_NEAR(static_cast<double>(found.event_delay_ns), edgeDelay(3 * kMs), 0.4 * kMs);
+}
+
 TEST(OnlineCalibration, APartOfManyEventsIsEnough) {
   // Some 12,000 events in a pair: bands of a few rows.
   const Calibration found =
-      calibrated(RampScene(0), {0.8 * kTrue.on, 1.2 * kTrue.off}, {true, false, 2000});
+      calibrated(RampScene(0), {{0.8 * kTrue.on, 1.2 * kTrue.off}}, {true, false, 2000});
   EXPECT_NEAR(found.thresholds.on / kTrue.on, 1.0, 0.05);
   EXPECT_NEAR(found.thresholds.off / kTrue.off, 1.0, 0.05);
 }
 
 TEST(OnlineCalibration, StaysWithinItsLimits) {
   const Calibration found =
-      calibrated(RampScene(0), {2.5 * kTrue.on, 0.4 * kTrue.off}, {true, false});
+      calibrated(RampScene(0), {{2.5 * kTrue.on, 0.4 * kTrue.off}}, {true, false});
   EXPECT_GE(found.thresholds.on, 0.7 * 2.5 * kTrue.on - 1e-12);
   EXPECT_LE(found.thresholds.off, 1.3 * 0.4 * kTrue.off + 1e-12);
 }
@@ -199,7 +222,7 @@ class OnlineCalibrationPair : public ::testing::Test {
     }
   }
 
-  OnlineCalibration calibration{kSize, kTrue, {true, true}};
+  OnlineCalibration calibration{kSize, {kTrue}, {true, true}};
   PixelEventLists lists{kSize, {}};
   std::vector<std::uint8_t> pixels = std::vector<std::uint8_t>(kSize.pixelCount(), 100);
   std::vector<float> gain = std::vector<float>(kSize.pixelCount(), 1.0F);
@@ -237,7 +260,7 @@ TEST_F(OnlineCalibrationPair, RestsWhenNothingIsToBeLearned) {
 TEST_F(OnlineCalibrationPair, RestsAfterAPairOfManyEventsInProportion) {
   eventsIn(0, kPeriod_ns + kExposure_ns);
   const std::uint64_t events = lists.lowerBound(kPeriod_ns + kExposure_ns);
-  calibration = OnlineCalibration(kSize, kTrue, {true, true, events / 3});
+  calibration = OnlineCalibration(kSize, {kTrue}, {true, true, events / 3});
   addFrame(0);
   addFrame(kPeriod_ns);
   for (int i = 0; i < 3; ++i) {

@@ -286,6 +286,37 @@ TEST_F(DeblurBagTool, RefusesAWrongConfiguration) {
   EXPECT_FALSE(fs::exists(output_));
 }
 
+TEST_F(DeblurBagTool, SavesWhatItLearnedForTheNextRun) {
+  const std::string learned = directory_.file("learned.yaml");
+  const std::string save = " --save-learned '" + learned + "'";
+  const auto first = run(paths() + save + kThresholds);
+  ASSERT_EQ(first.exit_code, 0) << first.output;
+  EXPECT_THAT(first.output,
+              AllOf(HasSubstr("in force at the end"), HasSubstr("written: " + learned)));
+  EXPECT_THAT(contents(learned),
+              AllOf(HasSubstr("contrast_threshold_on: 0."), HasSubstr("event_delay_us: ")));
+  // The next run starts there, and what the command line says comes before it.
+  write(learned, "contrast_threshold_on: 0.4\ncontrast_threshold_off: 0.5\nevent_delay_us: 700\n");
+  const std::string again = paths() + " --force --learned '" + learned + "' refine_contrast:=false";
+  ASSERT_EQ(run(again + " refine_delay:=false" + save).exit_code, 0);
+  EXPECT_EQ(contents(learned),
+            "contrast_threshold_on: 0.4000\ncontrast_threshold_off: 0.5000\nevent_delay_us: 700\n");
+  ASSERT_EQ(run(again + " refine_delay:=false event_delay_us:=-50" + save).exit_code, 0);
+  EXPECT_THAT(contents(learned), HasSubstr("event_delay_us: -50\n"));
+}
+
+TEST_F(DeblurBagTool, RefusesToReplaceWhatWasLearned) {
+  const std::string learned = directory_.file("learned.yaml");
+  write(learned, "mine\n");
+  const auto refused = run(paths() + " --save-learned '" + learned + "'" + kThresholds);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output, AllOf(HasSubstr(learned), HasSubstr("--force")));
+  EXPECT_EQ(contents(learned), "mine\n");
+  EXPECT_FALSE(fs::exists(output_));
+  EXPECT_THAT(run(paths() + " --learned '" + learned + "'" + kThresholds).output,
+              HasSubstr(learned));
+}
+
 TEST_F(DeblurBagTool, NeverWritesOverItsInputOrUnasked) {
   const std::string before = contents(input_);
   const auto onto_itself =

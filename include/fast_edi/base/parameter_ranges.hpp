@@ -44,6 +44,7 @@ constexpr ParameterRange kContrastOff{"contrast_threshold_off", "natural log", {
 constexpr ParameterRange kExposureTime{"exposure_time_us", "us", {1.0, 1e6, true}};
 /// Either clock may start at 1970 or at 0.
 constexpr ParameterRange kTimeOffset{"time_offset_us", "us", {-3e15, 3e15}};
+constexpr ParameterRange kEventDelay{"event_delay_us", "us", {-15e3, 15e3}};
 constexpr ParameterRange kCloseTimeout{"close_timeout_ms", "ms", {1.0, 60e3}};
 constexpr ParameterRange kBackwardJump{"max_backward_jump_ms", "ms", {1.0, 3600e3}};
 constexpr ParameterRange kForwardJump{"max_forward_jump_ms", "ms", {1.0, 3600e3}};

@@ -24,12 +24,14 @@
 /// Fit: least squares over informative pixels (|x_on - x_off| >= 3, hardly any events back
 /// and forth, no grey level near black or saturation), weighted by the square of the intensity
 /// (events of dark pixels come later than those of bright ones, in which errors are seen), robust
-/// (Cauchy weights), with a ridge towards the nominal values, exponential forgetting, and limits:
-/// thresholds within 30 % of nominal, the delay within 5 ms.
+/// (Cauchy weights), with a ridge towards the given values, exponential forgetting, and limits:
+/// thresholds within 30 % of the given ones, the delay within 15 ms (pixels of 30 Hz lag by 5 ms,
+/// in the dark by more).
 ///
-/// Thresholds are changed only if they differ from nominal by more than the error of such a fit (6
-/// to 10 %); the delay is multiplied by ln 2, the time at which an edge behind a low-pass reaches
-/// half of its height. An offset between the clocks is no low-pass: it belongs into `time_offset`.
+/// Thresholds are changed only if they differ from the given ones by more than the error of such a
+/// fit (6 to 10 %); the delay is multiplied by ln 2, the time at which an edge behind a low-pass
+/// reaches half of its height. An offset between the clocks is no low-pass: it belongs into
+/// `time_offset`.
 ///
 /// Each pair is used until kInitialFits were informative, then one in kRestFrames frames; also
 /// after kMaxUselessPairs consecutive pairs that were not. Of a pair of more than
@@ -90,7 +92,8 @@ class OnlineCalibration {
     const float* gain = nullptr;  ///< of DoubleIntegral::integrate(), not filtered
   };
 
-  OnlineCalibration(SensorSize size, ContrastThresholds nominal, Settings settings);
+  /// \param given in force until something else was learned; thresholds stay near these
+  OnlineCalibration(SensorSize size, const Calibration& given, Settings settings);
 
   /// True when the next frame is needed. Each pair is used at first; once enough has been learned,
   /// one of several, which follows slow changes at a fraction of the cost.
@@ -145,7 +148,7 @@ class OnlineCalibration {
   void updateInForce();
 
   SensorSize size_;
-  ContrastThresholds nominal_;
+  Calibration given_;
   Settings settings_;
   Calibration in_force_;
   NormalEquations learned_;

@@ -29,6 +29,7 @@ struct DeblurParameters {
   ExposureSource exposure_source = ExposureSource::kTopic;
   std::int64_t exposure_time_ns = 0;  ///< 0 = not known
   std::int64_t time_offset_ns = 0;    ///< event time = frame time + offset
+  std::int64_t event_delay_ns = 0;    ///< of events behind the light; where learning starts
   std::int64_t close_timeout_ns = 100 * kNanosecondsPerMillisecond;
   EventMapping event_mapping;  ///< of the events to the frames' pixels and polarity
   std::size_t max_buffered_events = 13'000'000;
@@ -39,7 +40,7 @@ struct DeblurParameters {
   LevelModel level{4 * kNanosecondsPerMillisecond, 0.85};  ///< see levelModel()
   FilterParameters filter;
   bool refine_contrast = true;  ///< learn the thresholds from the recording; needs filter.enabled
-  bool refine_delay = true;     ///< learn the delay of events behind frames; needs filter.enabled
+  bool refine_delay = true;     ///< learn event_delay_ns from the recording; needs filter.enabled
   bool passthrough = false;     ///< publish every frame unchanged
 };
 

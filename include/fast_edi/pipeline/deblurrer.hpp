@@ -40,7 +40,7 @@ struct DeblurStatus {
   SensorSize sensor_size;  ///< zero until the first event array or frame
   std::int64_t last_exposure_ns = 0;
   ContrastThresholds thresholds;    ///< in force: given or learned
-  std::int64_t event_delay_ns = 0;  ///< as learned
+  std::int64_t event_delay_ns = 0;  ///< in force: given or learned
   /// At the last frame that was passed through for PassReason::kClocksDiffer; zero before.
   ClockPair differing_clocks;
 };
@@ -86,7 +86,8 @@ class Deblurrer {
   /// are those of a new object with the new parameters, bit for bit, as long as their events are
   /// still stored: events before the start of the last frame are not. Two things are kept
   /// (filter.temporal restarts):
-  /// - What was learned from the recording, unless the thresholds, the time offset, event_mapping,
+  /// - What was learned from the recording, unless the thresholds, time offset, event delay,
+  /// event_mapping,
   ///   weighting, response, the exposure intervals (stamp_reference, exposure_source,
   ///   exposure_time), filter.enabled or what to learn changes: then learning restarts from the
   ///   given values.
