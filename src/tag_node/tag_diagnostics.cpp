@@ -1,9 +1,10 @@
 #include "tag_node/tag_diagnostics.hpp"
 
-#include <cstdio>
 #include <utility>
 
+#include "fast_edi/base/number_text.hpp"
 #include "fast_edi/base/types.hpp"
+#include "node/status_values.hpp"
 
 namespace fast_edi {
 namespace {
@@ -60,9 +61,9 @@ void TagDiagnostics::summarise(DiagnosticStatusWrapper& status) const {
   const std::int64_t last_ns =
       now_.last_frame_ns != 0 ? now_.last_frame_ns : now_.listening_since_ns;
   if (now_.time_ns - last_ns > kSilence_ns) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.1f s", seconds(now_.time_ns - last_ns));
-    status.mergeSummary(DiagnosticStatus::ERROR, "no image on " + image_topic_ + " for " + text);
+    status.mergeSummary(DiagnosticStatus::ERROR, "no image on " + image_topic_ + " for " +
+                                                     fixedText(seconds(now_.time_ns - last_ns), 1) +
+                                                     " s");
   }
   for (const Complaint& complaint : complaints_) {
     status.mergeSummary(DiagnosticStatus::WARN, complaint.text);
@@ -70,11 +71,12 @@ void TagDiagnostics::summarise(DiagnosticStatusWrapper& status) const {
 }
 
 void TagDiagnostics::fill(const LatencyRecord& detection_time,
-                          DiagnosticStatusWrapper& status) const {
-  summarise(status);
+                          DiagnosticStatusWrapper& wrapper) const {
+  summarise(wrapper);
   if (!now_.configuration_error.empty()) {
     return;
   }
+  StatusValues status(wrapper);
   const double elapsed_s = seconds(now_.time_ns - before_.time_ns);
   const double rate_hz =
       elapsed_s > 0.0 ? static_cast<double>(now_.frames - before_.frames) / elapsed_s : 0.0;

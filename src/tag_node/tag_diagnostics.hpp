@@ -47,7 +47,7 @@ class TagDiagnostics {
 
   /// The report of the last update().
   void fill(const LatencyRecord& detection_time,
-            diagnostic_updater::DiagnosticStatusWrapper& status) const;
+            diagnostic_updater::DiagnosticStatusWrapper& wrapper) const;
 
  private:
   void summarise(diagnostic_updater::DiagnosticStatusWrapper& status) const;

@@ -6,6 +6,7 @@
 
 #include "fast_edi/base/types.hpp"
 #include "node/diagnostic_value.hpp"
+#include "support/comma_locale.hpp"
 
 namespace fast_edi {
 namespace {
@@ -65,6 +66,16 @@ TEST_F(TagDiagnosticsTest, CountsAndRates) {
   EXPECT_EQ(value(status, "Detection p99 [ms]"), "99.000");
   EXPECT_EQ(value(status, "Poses"), "yes");
   EXPECT_EQ(value(status, "Frame id"), "camera");
+}
+
+TEST_F(TagDiagnosticsTest, WritesNumbersTheSameUnderEveryLocale) {
+  now_.frames = 1'234'567;
+  now_.time_ns += 5 * kNanosecondsPerSecond / 2;
+  const testing::CommaLocale comma;
+  const DiagnosticStatusWrapper status = reportAsItIs();
+  EXPECT_EQ(value(status, "Frames"), "1234567");
+  EXPECT_EQ(value(status, "Frames with tags [%]"), "0.0");
+  EXPECT_THAT(status.message, HasSubstr("2.5 s"));
 }
 
 TEST_F(TagDiagnosticsTest, SilenceIsAnError) {
