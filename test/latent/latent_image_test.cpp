@@ -88,13 +88,16 @@ TEST(LatentImage, OneSaturatedChannelIsNoSaturatedPixel) {
   parameters.frame_noise = false;
   LatentImage image(parameters);
   constexpr SensorSize kOne{1, 1};
-  const std::uint8_t blurry[] = {255, 200, 255};
-  std::uint8_t latent[3] = {};
   const std::uint16_t counts[2] = {1, 0};
-  float gain = 0.6F;
-  image.write({blurry, kOne, 3, PixelFormat::kColour8}, &gain, {counts, {0.25, 0.25}},
-              CameraResponse::linear(), {latent, kOne, 3, PixelFormat::kColour8});
-  EXPECT_LT(latent[1], 130);
+  for (std::size_t unsaturated = 0; unsaturated < 3; ++unsaturated) {
+    std::uint8_t blurry[] = {255, 255, 255};
+    blurry[unsaturated] = 200;
+    std::uint8_t latent[3] = {};
+    float gain = 0.6F;
+    image.write({blurry, kOne, 3, PixelFormat::kColour8}, &gain, {counts, {0.25, 0.25}},
+                CameraResponse::linear(), {latent, kOne, 3, PixelFormat::kColour8});
+    EXPECT_LT(latent[unsaturated], 130) << unsaturated;
+  }
 }
 
 TEST(LatentImage, EachPieceCanBeSwitchedOff) {
