@@ -187,6 +187,7 @@ class MethodComparison::Impl {
         const OutputFrame& output = finished.output;
         if (i == 0) {
           frame.stamp_ns = output.stamp_ns;
+          frame.input_stamp_ns = output.input.stamp_ns;
           frame.compared = output.deblurred;
           frame.pass_reason = output.pass_reason;
           frame.exposure = output.exposure;

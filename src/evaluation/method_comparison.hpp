@@ -44,8 +44,9 @@ const char* toString(Method method);
 DeblurParameters parametersOf(Method method, const DeblurParameters& ours);
 
 struct ComparedFrame {
-  std::int64_t stamp_ns = 0;  ///< of the output: the instant that the latent images show
-  bool compared = false;      ///< false: passed through, or its events are no longer there
+  std::int64_t stamp_ns = 0;        ///< of the output: the instant that the latent images show
+  std::int64_t input_stamp_ns = 0;  ///< of the input frame
+  bool compared = false;            ///< false: passed through, or its events are no longer there
   PassReason pass_reason = PassReason::kPassthroughParameter;  ///< when passed through
   ExposureInterval exposure;                                   ///< in frame time
   std::uint64_t events = 0;                                    ///< inside the exposure

@@ -46,44 +46,71 @@ std::string nameWithUnit(const MeasureInfo& info) {
   return name;
 }
 
-bool anyMethodHas(const EvaluationGroup& group, Measure measure) {
-  return std::any_of(kAllMethods.begin(), kAllMethods.end(), [&](Method method) {
-    return meanOver(group.members, method, measure).has_value();
+/// All columns in the order of reports: the truth comes last.
+std::vector<std::size_t> columnsOf(const EvaluationGroup& group) {
+  std::vector<std::size_t> columns;
+  for (const Method method : kAllMethods) {
+    if (method != Method::kTruth) {
+      columns.push_back(indexOf(method));
+    }
+  }
+  const std::size_t others = group.members.empty() ? 0 : group.members.front()->others.size();
+  for (std::size_t i = 0; i < others; ++i) {
+    columns.push_back(kMethodCount + i);
+  }
+  columns.push_back(indexOf(Method::kTruth));
+  return columns;
+}
+
+std::string columnName(const Evaluation& evaluation, std::size_t column) {
+  return column < kMethodCount ? toString(static_cast<Method>(column))
+                               : evaluation.others[column - kMethodCount];
+}
+
+std::string columnName(const EvaluationGroup& group, std::size_t column) {
+  return columnName(*group.members.front(), column);
+}
+
+bool anyColumnHas(const EvaluationGroup& group, Measure measure) {
+  const std::vector<std::size_t> columns = columnsOf(group);
+  return std::any_of(columns.begin(), columns.end(), [&](std::size_t column) {
+    return meanOver(group.members, column, measure).has_value();
   });
 }
 
 std::vector<Measure> measuresIn(const EvaluationGroup& group) {
   std::vector<Measure> measures;
   for (std::size_t i = 0; i < kMeasureCount; ++i) {
-    if (anyMethodHas(group, static_cast<Measure>(i))) {
+    if (anyColumnHas(group, static_cast<Measure>(i))) {
       measures.push_back(static_cast<Measure>(i));
     }
   }
   return measures;
 }
 
-/// Methods that have a figure for any of the measures: truth is often not known, and is not
+/// Columns that have a figure for any of the measures: truth is often not known, and is not
 /// compared with itself.
-std::vector<Method> methodsWith(const EvaluationGroup& group,
-                                const std::vector<Measure>& measures) {
-  std::vector<Method> methods;
-  for (const Method method : kAllMethods) {
+std::vector<std::size_t> columnsWith(const EvaluationGroup& group,
+                                     const std::vector<Measure>& measures) {
+  std::vector<std::size_t> columns;
+  for (const std::size_t column : columnsOf(group)) {
     if (std::any_of(measures.begin(), measures.end(), [&](Measure measure) {
-          return meanOver(group.members, method, measure).has_value();
+          return meanOver(group.members, column, measure).has_value();
         })) {
-      methods.push_back(method);
+      columns.push_back(column);
     }
   }
-  return methods;
+  return columns;
 }
 
-void printHeader(std::ostream& out, const std::string& first, const std::vector<Method>& methods) {
+void printHeader(std::ostream& out, const std::string& first, const EvaluationGroup& group,
+                 const std::vector<std::size_t>& columns) {
   out << "| " << first << " |";
-  for (const Method method : methods) {
-    out << " " << toString(method) << " |";
+  for (const std::size_t column : columns) {
+    out << " " << columnName(group, column) << " |";
   }
   out << "\n|---|";
-  for (std::size_t i = 0; i < methods.size(); ++i) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
     out << "---:|";
   }
   out << "\n";
@@ -152,14 +179,14 @@ void writeCsv(const fs::path& path, const std::vector<EvaluationGroup>& groups) 
   }
   file << "\n" << std::setprecision(kDigits);
   for (const EvaluationGroup& group : groups) {
-    const std::vector<Method> methods = methodsWith(group, measuresIn(group));
+    const std::vector<std::size_t> columns = columnsWith(group, measuresIn(group));
     for (const Evaluation* member : group.members) {
       for (const FrameFigures& frame : member->frames) {
-        for (const Method method : methods) {
+        for (const std::size_t column : columns) {
           file << group.name << "," << member->name << "," << frame.stamp_ns << ","
                << frame.exposure_ns << "," << frame.events << "," << frame.searched_contrast << ","
-               << toString(method) << "," << frame.runtime_ms[indexOf(method)];
-          for (const std::optional<double>& score : frame.scores[indexOf(method)]) {
+               << columnName(*member, column) << "," << frame.runtime_ms[column];
+          for (const std::optional<double>& score : frame.scores[column]) {
             file << ",";
             if (score) {
               file << *score;
@@ -177,8 +204,8 @@ cv::Mat examplePicture(const Evaluation& evaluation) {
   constexpr int kColumns = 3;
   constexpr int kScale = 2;
   std::vector<CaptionedPicture> pictures;
-  for (const Method method : kAllMethods) {
-    pictures.push_back({toString(method), evaluation.example[indexOf(method)]});
+  for (const std::size_t column : columnsOf({"", {&evaluation}})) {
+    pictures.push_back({columnName(evaluation, column), evaluation.example[column]});
   }
   return pictureGrid(pictures, kColumns, kScale);
 }
@@ -195,15 +222,15 @@ cv::Mat measurePicture(const EvaluationGroup& group, Measure measure) {
   for (const Evaluation* member : group.members) {
     names.push_back(member->name);
   }
-  for (const Method method : methodsWith(group, {measure})) {
-    PlotSeries line = {toString(method), {}};
+  for (const std::size_t column : columnsWith(group, {measure})) {
+    PlotSeries line = {columnName(group, column), {}};
     if (group.members.size() == 1) {
       for (const FrameFigures& frame : group.members.front()->frames) {
-        line.values.push_back(frame.scores[indexOf(method)][indexOf(measure)]);
+        line.values.push_back(frame.scores[column][indexOf(measure)]);
       }
     } else {
       for (const Evaluation* member : group.members) {
-        line.values.push_back(member->mean(method, measure));
+        line.values.push_back(member->mean(column, measure));
       }
     }
     series.push_back(std::move(line));
@@ -253,35 +280,36 @@ void writeGroup(std::ostream& out, const fs::path& folder, const EvaluationGroup
 
 void printMeasureTable(std::ostream& out, const EvaluationGroup& group) {
   const std::vector<Measure> measures = measuresIn(group);
-  const std::vector<Method> methods = methodsWith(group, measures);
-  printHeader(out, "mean", methods);
+  const std::vector<std::size_t> columns = columnsWith(group, measures);
+  printHeader(out, "mean", group, columns);
   for (const Measure measure : measures) {
     const MeasureInfo& info = describe(measure);
-    const std::optional<double> blurry = meanOver(group.members, Method::kBlurry, measure);
+    const std::optional<double> blurry = meanOver(group.members, indexOf(Method::kBlurry), measure);
     out << "| " << nameWithUnit(info) << (info.higher_is_better ? "" : ", lower is better") << " |";
-    for (const Method method : methods) {
-      const std::optional<double> value = meanOver(group.members, method, measure);
+    for (const std::size_t column : columns) {
+      const std::optional<double> value = meanOver(group.members, column, measure);
       out << " " << cell(value, info.decimals)
-          << (info.is_count && method != Method::kBlurry ? gainOver(value, blurry) : "") << " |";
+          << (info.is_count && column != indexOf(Method::kBlurry) ? gainOver(value, blurry) : "")
+          << " |";
     }
     out << "\n";
   }
 }
 
 void printMemberTable(std::ostream& out, const EvaluationGroup& group, Measure measure) {
-  const std::vector<Method> methods = methodsWith(group, {measure});
+  const std::vector<std::size_t> columns = columnsWith(group, {measure});
   const int decimals = describe(measure).decimals;
-  printHeader(out, "recording", methods);
+  printHeader(out, "recording", group, columns);
   for (const Evaluation* member : group.members) {
     out << "| " << member->name << " |";
-    for (const Method method : methods) {
-      out << " " << cell(member->mean(method, measure), decimals) << " |";
+    for (const std::size_t column : columns) {
+      out << " " << cell(member->mean(column, measure), decimals) << " |";
     }
     out << "\n";
   }
   out << "| mean |";
-  for (const Method method : methods) {
-    out << " " << cell(meanOver(group.members, method, measure), decimals) << " |";
+  for (const std::size_t column : columns) {
+    out << " " << cell(meanOver(group.members, column, measure), decimals) << " |";
   }
   out << "\n";
 }
@@ -289,16 +317,16 @@ void printMemberTable(std::ostream& out, const EvaluationGroup& group, Measure m
 void printRuntimeTable(std::ostream& out, const EvaluationGroup& group) {
   constexpr int kDecimals = 2;
   out << "| run time per frame [ms] | median | worst |\n|---|---:|---:|\n";
-  for (const Method method : kAllMethods) {
-    if (method == Method::kBlurry || method == Method::kTruth) {
-      continue;
+  Evaluation all;
+  for (const Evaluation* member : group.members) {
+    all.frames.insert(all.frames.end(), member->frames.begin(), member->frames.end());
+  }
+  for (const std::size_t column : columnsOf(group)) {
+    if (all.medianRuntimeMs(column) > 0.0) {
+      out << "| " << columnName(group, column) << " | "
+          << fixed(all.medianRuntimeMs(column), kDecimals) << " | "
+          << fixed(all.maxRuntimeMs(column), kDecimals) << " |\n";
     }
-    Evaluation all;
-    for (const Evaluation* member : group.members) {
-      all.frames.insert(all.frames.end(), member->frames.begin(), member->frames.end());
-    }
-    out << "| " << toString(method) << " | " << fixed(all.medianRuntimeMs(method), kDecimals)
-        << " | " << fixed(all.maxRuntimeMs(method), kDecimals) << " |\n";
   }
 }
 

@@ -6,7 +6,6 @@
 #include <iomanip>
 #include <iostream>
 #include <list>
-#include <map>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -20,8 +19,12 @@
 #include <boost/program_options.hpp>
 #include <opencv2/core/utility.hpp>
 
+#include "bags/recorded_frames.hpp"
 #include "command_line.hpp"
 #include "evaluation/evaluation.hpp"
+#include "evaluation/frames_by_stamp.hpp"
+#include "evaluation/method_options.hpp"
+#include "evaluation/recorded_method.hpp"
 #include "evaluation/report.hpp"
 #include "fast_edi/bags/bag_deserialise.hpp"
 #include "fast_edi/bags/bag_error.hpp"
@@ -30,7 +33,6 @@
 #include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/messages/event_array.hpp"
-#include "fast_edi/messages/image_pixels.hpp"
 #include "fast_edi/messages/message_conversion.hpp"
 #include "progress_bar.hpp"
 #include "sequences/sequence_sets.hpp"
@@ -56,6 +58,7 @@ struct Arguments {
   fast_edi::ScorerOptions scorer;
   fast_edi::ContrastSearchOptions search;
   std::vector<std::string> overrides;
+  std::vector<std::string> columns;  ///< NAME=OUT.bag[:TOPIC]
   bool overwrite = false;
   std::string sequences;  ///< name of a set; empty: a recording
   std::vector<std::string> variants;
@@ -115,6 +118,9 @@ po::options_description describeOptions(Arguments& arguments) {
   tools::addTopicOptions(recording, topics);
   add_recording("truth", textOption(arguments.truth_topic, "TOPIC"),
                 "true sharp frames, stamped mid-exposure; may be missing");
+  add_recording("column", po::value(&arguments.columns)->value_name("NAME=OUT.bag[:TOPIC]"),
+                "frames of another program as a further method, matched by their stamps; TOPIC: by "
+                "default where deblur_bag writes; may be repeated");
 
   po::options_description simulated("Simulated sequences");
   auto add_simulated = simulated.add_options();
@@ -148,8 +154,9 @@ tools::HelpText helpText() {
       "Usage: evaluate BAG... [options] [parameter:=value ...]\n"
       "       evaluate --sequences SET [options] [parameter:=value ...]\n\n"
       "Compares the blurry input, plain EDI, counter EDI, EDI with the contrast found by\n"
-      "sharpness, and the package's own output: table on standard output, report with\n"
-      "pictures in a folder. Parameters given as name:=value come before the YAML file's.\n"
+      "sharpness, the package's own output, and what --column names: table on standard\n"
+      "output, report with pictures in a folder. Parameters given as name:=value come before the "
+      "YAML file's.\n"
       "Latent images are taken at mid-exposure. Colour is turned to grey first; raw Bayer\n"
       "frames are measured as they are. --force removes the earlier report of a folder.\n",
       "0 done; 1 failed; 2 the recording was cut short or damaged."};
@@ -182,6 +189,9 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   }
   if (!arguments.variants.empty() && (!simulated || arguments.sequences == "twelve")) {
     throw po::error("--variant goes with --sequences choosing and judging");
+  }
+  if (simulated && !arguments.columns.empty()) {
+    throw po::error("--column goes with a recording");
   }
   if (!(arguments.threshold_factor > 0.0)) {
     throw po::error("--threshold-factor: expected a number above 0");
@@ -225,54 +235,6 @@ fast_edi::LoadedParameters loadParameters(const Arguments& arguments,
       root, std::filesystem::path(arguments.config).parent_path().string());
 }
 
-/// What the evaluation works on: one channel of 8 bits. Empty when the encoding is not deblurred.
-cv::Mat toMono8(const sensor_msgs::Image& message) {
-  const fast_edi::ImageReading reading = fast_edi::readImage(message);
-  if (reading.verdict != fast_edi::ImageVerdict::kSupported) {
-    return {};
-  }
-  if (fast_edi::isBayer(reading.view.format)) {
-    sensor_msgs::Image raw = message;  // photosite by photosite, as they are deblurred
-    raw.encoding = fast_edi::bytesPerSample(reading.view.format) == 2 ? "mono16" : "mono8";
-    return fast_edi::greyPixels(raw).clone();
-  }
-  return fast_edi::greyPixels(message).clone();
-}
-
-/// True frames by stamp, read before everything else: a truth may be recorded after its frame.
-class TruthFrames {
- public:
-  TruthFrames(const std::vector<std::string>& recordings, const std::string& topic) {
-    const std::unique_ptr<fast_edi::MessageSource> reader = fast_edi::openMessages(recordings);
-    fast_edi::BagMessage message;
-    while (reader->next(message)) {
-      if (message.connection->topic != topic) {
-        continue;
-      }
-      try {
-        const auto image = fast_edi::deserialise<sensor_msgs::Image>(message);
-        frames_[static_cast<std::int64_t>(image->header.stamp.toNSec())] = toMono8(*image);
-      } catch (const ros::serialization::StreamOverrunException&) {
-        ++malformed_;
-      }
-    }
-  }
-
-  cv::Mat at(std::int64_t stamp_ns) const {
-    // A driver's stamp is mid-exposure rounded down to 1 us.
-    constexpr std::int64_t kToleranceNs = fast_edi::kNanosecondsPerMicrosecond;
-    const auto after = frames_.lower_bound(stamp_ns - kToleranceNs);
-    return after != frames_.end() && after->first <= stamp_ns + kToleranceNs ? after->second
-                                                                             : cv::Mat();
-  }
-  std::size_t size() const { return frames_.size(); }
-  std::uint64_t malformed() const { return malformed_; }
-
- private:
-  std::map<std::int64_t, cv::Mat> frames_;
-  std::uint64_t malformed_ = 0;
-};
-
 /// \return false for a message that contradicts itself
 bool feed(const fast_edi::BagMessage& message, const fast_edi::TopicNames& topics,
           fast_edi::MethodComparison& comparison) {
@@ -289,8 +251,8 @@ bool feed(const fast_edi::BagMessage& message, const fast_edi::TopicNames& topic
       if (fast_edi::readImage(*image).verdict == fast_edi::ImageVerdict::kMalformed) {
         return false;
       }
-      comparison.addFrame(static_cast<std::int64_t>(image->header.stamp.toNSec()), toMono8(*image),
-                          now_ns);
+      comparison.addFrame(static_cast<std::int64_t>(image->header.stamp.toNSec()),
+                          fast_edi::toMono8(*image), now_ns);
     } else if (topic == topics.exposure) {
       comparison.addExposure(fast_edi::deserialise<std_msgs::Int32>(message)->data, now_ns);
     }
@@ -331,6 +293,29 @@ void printGroups(const std::vector<fast_edi::EvaluationGroup>& groups,
   }
 }
 
+/// What --column names. Adds to \p incomplete what is wrong with the recordings.
+fast_edi::OtherMethods otherMethods(const Arguments& arguments,
+                                    std::vector<std::string>& incomplete) {
+  std::vector<std::string> names = fast_edi::methodNames();
+  fast_edi::OtherMethods methods;
+  for (const std::string& text : arguments.columns) {
+    const fast_edi::NamedFile column = fast_edi::namedFile("--column", text, names);
+    const fast_edi::RecordedTopic from =
+        fast_edi::recordedTopic(column.file, arguments.topics.outputImage());
+    fast_edi::RecordedFrames frames = fast_edi::requireFrames(from.recording, from.topic);
+    if (frames.malformed > 0) {
+      incomplete.push_back(column.name + ": " + std::to_string(frames.malformed) +
+                           " malformed frames in " + from.recording + " left out");
+    }
+    if (!frames.damage.empty()) {
+      incomplete.push_back(column.name + ": " + from.recording + " is cut short or damaged");
+    }
+    methods.push_back(std::make_unique<fast_edi::RecordedMethod>(
+        column.name, from.recording + " " + from.topic, std::move(frames.by_stamp)));
+  }
+  return methods;
+}
+
 int evaluateBag(const Arguments& arguments) {
   const std::unique_ptr<fast_edi::MessageSource> recording =
       fast_edi::openMessages(arguments.recordings);
@@ -338,21 +323,28 @@ int evaluateBag(const Arguments& arguments) {
   const fast_edi::LoadedParameters loaded =
       tools::loadParametersFor(reader, arguments.config, arguments.overrides);
   tools::printWarnings(loaded);
+  std::vector<std::string> incomplete;
+  const fast_edi::OtherMethods others = otherMethods(arguments, incomplete);
   fast_edi::prepareReportFolder(arguments.output, arguments.overwrite);
   const fast_edi::DeblurParameters& parameters = loaded.deblur;
   const std::string faults = fast_edi::checkTopics(arguments.topics, reader.connections());
   if (!faults.empty()) {
     throw fast_edi::BagError(fast_edi::nameOf(arguments.recordings) + ": " + faults);
   }
-  const TruthFrames truth(arguments.recordings, arguments.truth_topic);
+  const fast_edi::RecordedFrames truth =
+      fast_edi::readFrames(arguments.recordings, arguments.truth_topic);
   const fast_edi::FrameScorer scorer(arguments.scorer);
   fast_edi::EvaluationRecorder recorder(
       std::filesystem::path(arguments.recordings.front()).filename().string(), scorer,
-      [&truth](std::int64_t stamp_ns) { return truth.at(stamp_ns); });
+      [&truth](std::int64_t stamp_ns) {
+        const auto found = fast_edi::frameAt(truth.by_stamp, stamp_ns);
+        return found != truth.by_stamp.end() ? found->second : cv::Mat();
+      },
+      others);
   fast_edi::MethodComparison comparison(
       parameters, arguments.search,
       [&recorder](const fast_edi::ComparedFrame& frame) { recorder.add(frame); });
-  std::uint64_t malformed = truth.malformed();
+  std::uint64_t malformed = truth.malformed;
   {
     fast_edi::ProgressBar bar("evaluating");
     fast_edi::BagMessage message;
@@ -368,12 +360,17 @@ int evaluateBag(const Arguments& arguments) {
   notes.push_back("Contrast thresholds: ON " + decimal(parameters.thresholds.on) + ", OFF " +
                   decimal(parameters.thresholds.off) +
                   "; searched: " + decimal(evaluation.meanSearchedContrast()) + " in the mean");
-  if (truth.size() == 0) {
+  if (truth.by_stamp.empty()) {
     notes.push_back("No true frames on " + arguments.truth_topic + ": no PSNR, no SSIM");
   }
   for (const auto& [reason, count] : evaluation.left_out) {
     notes.push_back(std::to_string(count) + " frames left out: " + reason);
   }
+  for (const std::unique_ptr<fast_edi::OtherMethod>& other : others) {
+    const std::vector<std::string> more = other->notes();
+    notes.insert(notes.end(), more.begin(), more.end());
+  }
+  notes.insert(notes.end(), incomplete.begin(), incomplete.end());
   if (evaluation.frames.empty()) {
     throw std::runtime_error(
         fast_edi::nameOf(arguments.recordings) + ": no frame could be deblurred" +
@@ -389,7 +386,7 @@ int evaluateBag(const Arguments& arguments) {
             << "\n";
   tools::printDamage(fast_edi::nameOf(arguments.recordings), reader.damage());
   tools::printMalformed(malformed);
-  return reader.damage().empty() && malformed == 0 ? kDone : kInputIncomplete;
+  return reader.damage().empty() && malformed == 0 && incomplete.empty() ? kDone : kInputIncomplete;
 }
 
 int framesOfTwelve(const Arguments& arguments) {

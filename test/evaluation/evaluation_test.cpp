@@ -52,6 +52,33 @@ TEST(EvaluationRecorder, FramesThatCouldNotBeComparedAreCounted) {
   EXPECT_EQ(recorder.evaluation().left_out.at(toString(PassReason::kEventsMissing)), 1U);
 }
 
+/// Darker than the frame, and none for the frame at 2 ns.
+class Darkening : public OtherMethod {
+ public:
+  std::string name() const override { return "darkening"; }
+  Result deblur(const Frame& frame) override {
+    return frame.stamp_ns == 2 ? Result() : Result{frame.blurry - cv::Scalar(50), 4.0};
+  }
+};
+
+TEST(EvaluationRecorder, OtherMethodsAreColumnsOfTheirOwn) {
+  const FrameScorer scorer(skipping(0));
+  OtherMethods others;
+  others.push_back(std::make_unique<Darkening>());
+  EvaluationRecorder recorder("name", scorer, truthAt, others);
+  for (const std::int64_t stamp_ns : {1, 2, 3}) {
+    recorder.add(frameAt(stamp_ns));
+  }
+  const Evaluation& evaluation = recorder.evaluation();
+  ASSERT_EQ(evaluation.others, std::vector<std::string>{"darkening"});
+  const auto& frames = evaluation.frames;
+  EXPECT_FALSE(frames[1].scores[kMethodCount][indexOf(Measure::kPsnr)].has_value());
+  EXPECT_LT(*evaluation.mean(kMethodCount, Measure::kPsnr),
+            *evaluation.mean(Method::kBlurry, Measure::kPsnr));
+  EXPECT_EQ(evaluation.example[kMethodCount].at<std::uint8_t>(0, 0), 50);
+  EXPECT_EQ(evaluation.medianRuntimeMs(kMethodCount), 4.0) << "of the frames that it has";
+}
+
 TEST(Evaluation, MeansAreThoseOfTheFramesThatHaveTheMeasure) {
   Evaluation evaluation;
   evaluation.frames.resize(3);

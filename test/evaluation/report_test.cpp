@@ -56,10 +56,10 @@ class ReportTest : public testing::Test {
 
 TEST_F(ReportTest, MeansCountEachMemberTheSame) {
   EXPECT_EQ(one_.mean(Method::kPlain, Measure::kPsnr), 27.0);
-  EXPECT_EQ(meanOver({&one_, &two_}, Method::kPlain, Measure::kPsnr), 29.0);
-  EXPECT_FALSE(meanOver({&one_, &two_}, Method::kOurs, Measure::kPsnr).has_value());
-  EXPECT_EQ(one_.medianRuntimeMs(Method::kPlain), 22.0);
-  EXPECT_EQ(one_.maxRuntimeMs(Method::kPlain), 22.0);
+  EXPECT_EQ(meanOver({&one_, &two_}, indexOf(Method::kPlain), Measure::kPsnr), 29.0);
+  EXPECT_FALSE(meanOver({&one_, &two_}, indexOf(Method::kOurs), Measure::kPsnr).has_value());
+  EXPECT_EQ(one_.medianRuntimeMs(indexOf(Method::kPlain)), 22.0);
+  EXPECT_EQ(one_.maxRuntimeMs(indexOf(Method::kPlain)), 22.0);
 }
 
 TEST_F(ReportTest, TablesHaveWhatWasMeasuredAndNothingElse) {
@@ -78,6 +78,32 @@ TEST_F(ReportTest, TablesHaveWhatWasMeasuredAndNothingElse) {
             "| one | 21.00 | 27.00 |\n"
             "| two | 30.00 | 31.00 |\n"
             "| mean | 25.50 | 29.00 |\n");
+}
+
+TEST_F(ReportTest, OtherMethodsStandBeforeTheTruth) {
+  for (Evaluation* evaluation : {&one_, &two_}) {
+    evaluation->others = {"theirs"};
+    evaluation->example.resize(kMethodCount + 1);
+    for (FrameFigures& frame : evaluation->frames) {
+      frame.scores.resize(kMethodCount + 1);
+      frame.runtime_ms.resize(kMethodCount + 1);
+      frame.scores[kMethodCount][indexOf(Measure::kPsnr)] = 25.0;
+      frame.scores[indexOf(Method::kTruth)][indexOf(Measure::kOrb)] = 60.0;
+    }
+  }
+  std::ostringstream table;
+  printMeasureTable(table, {"both", {&one_, &two_}});
+  EXPECT_THAT(table.str(), HasSubstr("| mean | blurry input | plain EDI | theirs | truth |\n"));
+  EXPECT_THAT(table.str(), HasSubstr("| PSNR [dB] | 25.50 | 29.00 | 25.00 | - |\n"));
+  std::ostringstream runtimes;
+  printRuntimeTable(runtimes, {"both", {&one_, &two_}});
+  EXPECT_EQ(runtimes.str(),
+            "| run time per frame [ms] | median | worst |\n"
+            "|---|---:|---:|\n"
+            "| plain EDI | 22.00 | 30.00 |\n")
+      << "what was not computed here has no run time";
+  writeReport(folder_, {}, {{"both", {&one_, &two_}}});
+  EXPECT_THAT(contentOf(fs::path(folder_) / "figures.csv"), HasSubstr(",theirs,0,25,"));
 }
 
 TEST_F(ReportTest, ThePageNamesOnlyPicturesThatExist) {

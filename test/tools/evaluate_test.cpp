@@ -5,6 +5,8 @@
 #include <string>
 
 #include <gmock/gmock.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
 
 #include "support/command.hpp"
 #include "support/temporary_directory.hpp"
@@ -91,6 +93,42 @@ TEST_F(EvaluateTest, WithoutTruthItSaysSo) {
   EXPECT_THAT(result.output, Not(HasSubstr("| PSNR")));
 }
 
+TEST_F(EvaluateTest, FramesOfAnotherProgramAreAColumn) {
+  const std::string bag = simulate();
+  const std::string out = directory_.file("out.bag");
+  {
+    // The true frames but the last.
+    rosbag::Bag source(bag, rosbag::bagmode::Read);
+    rosbag::Bag target(out, rosbag::bagmode::Write);
+    int frames = 0;
+    for (const rosbag::MessageInstance& message :
+         rosbag::View(source, rosbag::TopicQuery("/dvs/ground_truth/image_raw"))) {
+      if (++frames < 3) {
+        target.write("/theirs", message.getTime(), message);
+      }
+    }
+  }
+  const std::string options = bag + kThresholds + " --full-reference-only --column ";
+  const CommandResult result = evaluate(options + "theirs=" + out + ":/theirs");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("| searched contrast | ours | theirs |\n"));
+  EXPECT_THAT(result.output, HasSubstr(" | 100.00 |\n")) << "PSNR of the true frames themselves";
+  EXPECT_THAT(result.output, HasSubstr("theirs: no frame in " + out + " /theirs at "));
+  EXPECT_THAT(contentOf(directory_.file("report/figures.csv")), HasSubstr(",theirs,0,"));
+
+  const auto fails = [&](const std::string& column, const std::string& message) {
+    const CommandResult failed = evaluate(options + column + " --force");
+    EXPECT_EQ(failed.exit_code, 1) << column;
+    EXPECT_THAT(failed.output, HasSubstr(message));
+  };
+  fails("theirs", "--column: expected NAME=FILE, got \"theirs\"");
+  fails("ours=" + out + ":/theirs", "there is a column \"ours\" already");
+  fails("theirs=" + out, "no frames on /dvs/deblurred/image_raw; topics with images: /theirs");
+  fails("theirs=/nonexistent.bag", "/nonexistent.bag");
+  EXPECT_TRUE(std::filesystem::exists(directory_.file("report/report.md")))
+      << "what cannot be done replaces nothing";
+}
+
 TEST_F(EvaluateTest, ACutRecordingIsEvaluatedAsFarAsItGoes) {
   const std::string bag = simulate();
   std::filesystem::resize_file(bag, std::filesystem::file_size(bag) * 4 / 5);
@@ -141,6 +179,7 @@ TEST_F(EvaluateTest, NamesWhatIsWrong) {
   fails("--sequences twelve --video 4", "expected an odd number");
   fails("a.bag --video 5" + kThresholds, "--video goes with --sequences twelve");
   fails("--sequences twelve --threshold-factor 0", "--threshold-factor");
+  fails("--sequences twelve --column a=b.bag", "--column goes with a recording");
   fails("--sequences twelve --sseq-model /nonexistent", "/nonexistent/feature_range.txt");
   const std::string bag = simulate();
   fails(bag + kThresholds + " --image /none", "/none");
