@@ -73,16 +73,27 @@ EvaluationRecorder::EvaluationRecorder(std::string name, const FrameScorer& scor
   }
 }
 
+void EvaluationRecorder::forgetFeatures() {
+  for (FeatureMemory& memory : memories_) {
+    memory.clear();
+  }
+}
+
 void EvaluationRecorder::add(const ComparedFrame& frame) {
+  const bool chosen = scorer_.options().scored.contains(++frames_);
   if (!frame.compared) {
-    ++evaluation_.left_out[toString(frame.pass_reason)];
-    for (FeatureMemory& memory : memories_) {
-      memory.clear();
+    if (chosen) {
+      ++evaluation_.left_out[toString(frame.pass_reason)];
     }
+    forgetFeatures();
     return;
   }
   if (unscored_ < scorer_.options().first_frames_unscored) {
     ++unscored_;
+    return;
+  }
+  if (!chosen) {
+    forgetFeatures();
     return;
   }
   std::vector<cv::Mat> images(frame.images.begin(), frame.images.end());

@@ -70,12 +70,16 @@ class EvaluationRecorder {
   const Evaluation& evaluation() const { return evaluation_; }
 
  private:
+  /// Of all columns: the next frame does not follow the last one.
+  void forgetFeatures();
+
   const FrameScorer& scorer_;
   TruthSource truth_;
   std::vector<OtherMethod*> others_;
   Evaluation evaluation_;
   std::vector<FeatureMemory> memories_;  ///< by column
   std::uint64_t example_events_ = 0;
+  int frames_ = 0;    ///< added so far
   int unscored_ = 0;  ///< of the first frames
 };
 

@@ -14,6 +14,7 @@
 #include "measures/brisque.hpp"
 #include "measures/feature_matches.hpp"
 #include "measures/feature_tracks.hpp"
+#include "measures/frame_choice.hpp"
 #include "measures/sseq.hpp"
 
 namespace fast_edi {
@@ -84,6 +85,7 @@ struct ScorerOptions {
   std::string sseq_folder;  ///< empty: no SSEQ
   MeasureExtent extent = MeasureExtent::kAll;
   int first_frames_unscored = 0;  ///< of each recording: time to learn from it
+  FrameChoice scored;             ///< of each recording
 };
 
 /// Of one image, by kAllFeatureMethods.

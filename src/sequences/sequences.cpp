@@ -78,13 +78,17 @@ std::vector<EvaluationSequence> evaluationSequences(int frames, int seeds) {
 
 Evaluation evaluateSequence(const EvaluationSequence& sequence, const DeblurParameters& parameters,
                             double threshold_factor, const ContrastSearchOptions& search,
-                            const FrameScorer& scorer, const std::function<void(int)>& progress) {
+                            const FrameScorer& scorer, const OtherMethods& others,
+                            const std::function<void(int)>& progress) {
   std::map<std::int64_t, cv::Mat> truths;
   int done = 0;
-  EvaluationRecorder recorder(sequence.name, scorer, [&](std::int64_t stamp_ns) {
-    const auto found = truths.find(stamp_ns);
-    return found != truths.end() ? found->second : cv::Mat();
-  });
+  EvaluationRecorder recorder(
+      sequence.name, scorer,
+      [&](std::int64_t stamp_ns) {
+        const auto found = truths.find(stamp_ns);
+        return found != truths.end() ? found->second : cv::Mat();
+      },
+      others);
   MethodComparison comparison(sensorParameters(parameters, sequence.settings, threshold_factor),
                               search, [&](const ComparedFrame& frame) {
                                 recorder.add(frame);

@@ -49,9 +49,11 @@ std::vector<EvaluationSequence> evaluationSequences(int frames = kSequenceFrames
 /// Simulates a sequence and compares the methods on it.
 /// \param parameters of the variant under evaluation; thresholds and exposure are those of the
 ///        simulated sensor, thresholds times \p threshold_factor
+/// \param others further methods
 /// \param progress called after each frame with the number of frames done
 Evaluation evaluateSequence(const EvaluationSequence& sequence, const DeblurParameters& parameters,
                             double threshold_factor, const ContrastSearchOptions& search,
-                            const FrameScorer& scorer, const std::function<void(int)>& progress);
+                            const FrameScorer& scorer, const OtherMethods& others,
+                            const std::function<void(int)>& progress);
 
 }  // namespace fast_edi

@@ -21,6 +21,7 @@
 
 #include "bags/recorded_frames.hpp"
 #include "command_line.hpp"
+#include "dark_channel/dark_channel_method.hpp"
 #include "evaluation/evaluation.hpp"
 #include "evaluation/frames_by_stamp.hpp"
 #include "evaluation/method_options.hpp"
@@ -34,6 +35,7 @@
 #include "fast_edi/config/parameters_from_yaml.hpp"
 #include "fast_edi/messages/event_array.hpp"
 #include "fast_edi/messages/message_conversion.hpp"
+#include "networks/network_method.hpp"
 #include "progress_bar.hpp"
 #include "sequences/sequence_sets.hpp"
 #include "sequences/sequences.hpp"
@@ -58,7 +60,11 @@ struct Arguments {
   fast_edi::ScorerOptions scorer;
   fast_edi::ContrastSearchOptions search;
   std::vector<std::string> overrides;
-  std::vector<std::string> columns;  ///< NAME=OUT.bag[:TOPIC]
+  std::vector<std::string> columns;   ///< NAME=OUT.bag[:TOPIC]
+  std::vector<std::string> networks;  ///< NAME=MODEL.onnx
+  std::string network_range = "0:1";
+  bool dark_channel = false;
+  fast_edi::BlindDeblurringOptions dark_channel_options;
   bool overwrite = false;
   std::string sequences;  ///< name of a set; empty: a recording
   std::vector<std::string> variants;
@@ -73,6 +79,35 @@ std::string decimal(double value) {
   std::ostringstream text;
   text << std::setprecision(4) << value;
   return text.str();
+}
+
+/// Methods that see the blurry frame alone.
+void addOtherMethods(po::options_description& options, Arguments& arguments) {
+  po::options_description methods("Other methods, with a recording or --sequences twelve");
+  auto add = methods.add_options();
+  add("network", po::value(&arguments.networks)->value_name("NAME=MODEL.onnx"),
+      "a network of a single image, with 1 or 3 channels in and out; may be repeated");
+  add("network-range", tools::textOption(arguments.network_range, "BLACK:WHITE"),
+      "what the networks have for 0 and 255 DN");
+  add("dark-channel", po::bool_switch(&arguments.dark_channel),
+      "blind deblurring by the dark channel prior (Pan et al., CVPR 2016): many seconds a frame");
+  fast_edi::BlindDeblurringOptions& dark = arguments.dark_channel_options;
+  add("dark-channel-kernel",
+      po::value(&dark.kernel_px)->default_value(dark.kernel_px)->value_name("PX"),
+      "side of its kernel, odd; must hold the blur");
+  const auto weight = [](double& target) {
+    return po::value(&target)->default_value(target, decimal(target))->value_name("W");
+  };
+  add("dark-channel-lambda", weight(dark.weights.dark), "weight of the dark channel; 0: without");
+  add("dark-channel-mu", weight(dark.weights.gradient), "weight of the gradient");
+  add("dark-channel-gamma", weight(dark.kernel_weight), "weight of the kernel");
+  add("dark-channel-patch",
+      po::value(&dark.weights.patch_px)->default_value(dark.weights.patch_px)->value_name("PX"),
+      "side of the neighbourhood whose darkest pixel counts");
+  add("dark-channel-iterations",
+      po::value(&dark.iterations)->default_value(dark.iterations)->value_name("N"),
+      "estimates of image and kernel at each scale");
+  options.add(methods);
 }
 
 po::options_description describeOptions(Arguments& arguments) {
@@ -104,6 +139,11 @@ po::options_description describeOptions(Arguments& arguments) {
           ->default_value(scorer.first_frames_unscored)
           ->value_name("N"),
       "first N frames of each recording are deblurred but not scored: what comes after learning");
+  add("score-frames",
+      po::value<std::string>()->value_name("N-M,...")->notifier(
+          [&scorer](const std::string& text) { scorer.scored = fast_edi::FrameChoice(text); }),
+      "only these frames of each recording are scored, from 1 on; inliers and tracks are those of "
+      "frames that follow each other");
   const auto threshold = [](double& target) {
     return po::value(&target)->default_value(target, decimal(target))->value_name("C");
   };
@@ -146,6 +186,7 @@ po::options_description describeOptions(Arguments& arguments) {
                 "instead: PSNR of the high-rate video at N instants of each exposure (odd), by the "
                 "package as its parameters are");
   options.add(recording).add(simulated);
+  addOtherMethods(options, arguments);
   return options;
 }
 
@@ -154,8 +195,9 @@ tools::HelpText helpText() {
       "Usage: evaluate BAG... [options] [parameter:=value ...]\n"
       "       evaluate --sequences SET [options] [parameter:=value ...]\n\n"
       "Compares the blurry input, plain EDI, counter EDI, EDI with the contrast found by\n"
-      "sharpness, the package's own output, and what --column names: table on standard\n"
-      "output, report with pictures in a folder. Parameters given as name:=value come before the "
+      "sharpness, the package's own output, and other methods that are asked for: table\n"
+      "on standard output, report with pictures in a folder. Parameters given as name:=value come "
+      "before the "
       "YAML file's.\n"
       "Latent images are taken at mid-exposure. Colour is turned to grey first; raw Bayer\n"
       "frames are measured as they are. --force removes the earlier report of a folder.\n",
@@ -192,6 +234,14 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   }
   if (simulated && !arguments.columns.empty()) {
     throw po::error("--column goes with a recording");
+  }
+  const bool without_others =
+      values->count("video") > 0 || (simulated && arguments.sequences != "twelve");
+  if (without_others && (arguments.dark_channel || !arguments.networks.empty() ||
+                         values->count("score-frames") > 0)) {
+    throw po::error(
+        "--network, --dark-channel and --score-frames go with a recording or --sequences twelve, "
+        "without --video");
   }
   if (!(arguments.threshold_factor > 0.0)) {
     throw po::error("--threshold-factor: expected a number above 0");
@@ -293,11 +343,27 @@ void printGroups(const std::vector<fast_edi::EvaluationGroup>& groups,
   }
 }
 
-/// What --column names. Adds to \p incomplete what is wrong with the recordings.
+/// What --dark-channel, --network and --column ask for. Adds to \p incomplete what is wrong with
+/// the recordings.
 fast_edi::OtherMethods otherMethods(const Arguments& arguments,
                                     std::vector<std::string>& incomplete) {
   std::vector<std::string> names = fast_edi::methodNames();
   fast_edi::OtherMethods methods;
+  if (arguments.dark_channel) {
+    const auto bar = std::make_shared<fast_edi::ProgressBar>("one frame ");
+    methods.push_back(std::make_unique<fast_edi::DarkChannelMethod>(
+        arguments.dark_channel_options, [bar](double done) {
+          constexpr double kSteps = 1000.0;
+          bar->update(static_cast<std::uint64_t>(done * kSteps),
+                      static_cast<std::uint64_t>(kSteps));
+        }));
+    names.push_back(methods.back()->name());
+  }
+  const fast_edi::NetworkRange range = fast_edi::networkRange(arguments.network_range);
+  for (const std::string& text : arguments.networks) {
+    const fast_edi::NamedFile network = fast_edi::namedFile("--network", text, names);
+    methods.push_back(std::make_unique<fast_edi::NetworkMethod>(network.name, network.file, range));
+  }
   for (const std::string& text : arguments.columns) {
     const fast_edi::NamedFile column = fast_edi::namedFile("--column", text, names);
     const fast_edi::RecordedTopic from =
@@ -395,6 +461,9 @@ int framesOfTwelve(const Arguments& arguments) {
 
 int evaluateSequences(const Arguments& arguments, const fast_edi::DeblurParameters& parameters) {
   const int frames = framesOfTwelve(arguments);
+  std::vector<std::string> incomplete;  // nothing, without --column
+  const fast_edi::OtherMethods others = otherMethods(arguments, incomplete);
+  fast_edi::prepareReportFolder(arguments.output, arguments.overwrite);
   const std::vector<fast_edi::EvaluationSequence> sequences =
       fast_edi::evaluationSequences(frames, arguments.seeds);
   const fast_edi::FrameScorer scorer(arguments.scorer);
@@ -407,7 +476,7 @@ int evaluateSequences(const Arguments& arguments, const fast_edi::DeblurParamete
     std::uint64_t done_before = 0;
     for (const fast_edi::EvaluationSequence& sequence : sequences) {
       evaluations.push_back(fast_edi::evaluateSequence(
-          sequence, parameters, arguments.threshold_factor, arguments.search, scorer,
+          sequence, parameters, arguments.threshold_factor, arguments.search, scorer, others,
           [&](int done) { bar.update(done_before + static_cast<std::uint64_t>(done), total); }));
       groups[sequence.for_tuning ? 0 : 1].members.push_back(&evaluations.back());
       done_before += static_cast<std::uint64_t>(frames);
@@ -451,6 +520,7 @@ fast_edi::Variant variantFrom(const Arguments& arguments, const std::string& tex
 
 int evaluateSet(const Arguments& arguments, fast_edi::SequenceSet set,
                 const fast_edi::DeblurParameters& parameters) {
+  fast_edi::prepareReportFolder(arguments.output, arguments.overwrite);
   const std::string scores = arguments.output + "/" + arguments.sequences + ".csv";
   if (!arguments.overwrite && std::filesystem::exists(scores)) {
     throw std::runtime_error("cannot write " + scores +
@@ -535,7 +605,6 @@ int run(const Arguments& arguments) {
   if (arguments.video_images != 0) {
     return evaluateVideo(arguments, parameters.deblur);
   }
-  fast_edi::prepareReportFolder(arguments.output, arguments.overwrite);
   const fast_edi::SequenceSet set = fast_edi::sequenceSetFromName(arguments.sequences);
   return set == fast_edi::SequenceSet::kTwelve ? evaluateSequences(arguments, parameters.deblur)
                                                : evaluateSet(arguments, set, parameters.deblur);

@@ -43,6 +43,21 @@ TEST(EvaluationRecorder, FramesAtTheStartMayBeLeftUnscored) {
   EXPECT_TRUE(evaluation.left_out.empty());
 }
 
+TEST(EvaluationRecorder, ScoresTheFramesThatWereChosen) {
+  ScorerOptions options = skipping(1);
+  options.scored = FrameChoice("1-2,4");
+  const FrameScorer scorer(options);
+  EvaluationRecorder recorder("name", scorer, truthAt);
+  for (const std::int64_t stamp_ns : {1, 2, 3, 4, 5}) {
+    recorder.add(frameAt(stamp_ns, stamp_ns != 5));
+  }
+  const Evaluation& evaluation = recorder.evaluation();
+  ASSERT_EQ(evaluation.frames.size(), 2U);
+  EXPECT_EQ(evaluation.frames[0].stamp_ns, 2) << "the first frame is skipped all the same";
+  EXPECT_EQ(evaluation.frames[1].stamp_ns, 4);
+  EXPECT_TRUE(evaluation.left_out.empty()) << "nobody asked for the fifth";
+}
+
 TEST(EvaluationRecorder, FramesThatCouldNotBeComparedAreCounted) {
   const FrameScorer scorer(skipping(0));
   EvaluationRecorder recorder("name", scorer, truthAt);

@@ -60,7 +60,7 @@ class StrongBlurTest : public testing::Test {
   static EvaluationSequence sequence() { return evaluationSequences(kFrames, 1).front(); }
   static Evaluation evaluate(double threshold_factor, int& reported) {
     const FrameScorer scorer(fullReferenceOnly());
-    return evaluateSequence(sequence(), someParameters(), threshold_factor, {}, scorer,
+    return evaluateSequence(sequence(), someParameters(), threshold_factor, {}, scorer, {},
                             [&reported](int done) { reported = done; });
   }
   static double psnr(const Evaluation& evaluation, Method method) {

@@ -8,6 +8,7 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
+#include "networks/onnx_model.hpp"
 #include "support/command.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -129,6 +130,18 @@ TEST_F(EvaluateTest, FramesOfAnotherProgramAreAColumn) {
       << "what cannot be done replaces nothing";
 }
 
+TEST_F(EvaluateTest, MethodsOfASingleImageAreColumnsOfTheFramesThatAreScored) {
+  const std::string model = directory_.file("net.onnx");
+  std::ofstream(model, std::ios::binary) << ConvolutionModel().bytes();
+  const CommandResult result = evaluate(
+      simulate() + kThresholds + " --full-reference-only --score-frames 2 --network same=" + model +
+      " --dark-channel --dark-channel-kernel 5 --dark-channel-iterations 1");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("| searched contrast | ours | dark channel | same |\n"));
+  EXPECT_THAT(result.output, HasSubstr("\n| same | "));
+  EXPECT_THAT(contentOf(directory_.file("report/report.md")), HasSubstr(": 1 frames compared"));
+}
+
 TEST_F(EvaluateTest, ACutRecordingIsEvaluatedAsFarAsItGoes) {
   const std::string bag = simulate();
   std::filesystem::resize_file(bag, std::filesystem::file_size(bag) * 4 / 5);
@@ -180,6 +193,13 @@ TEST_F(EvaluateTest, NamesWhatIsWrong) {
   fails("a.bag --video 5" + kThresholds, "--video goes with --sequences twelve");
   fails("--sequences twelve --threshold-factor 0", "--threshold-factor");
   fails("--sequences twelve --column a=b.bag", "--column goes with a recording");
+  fails("--sequences judging --dark-channel", "go with a recording or --sequences twelve");
+  fails("a.bag --score-frames 0" + kThresholds, "expected numbers from 1 on and ranges");
+  fails(kDemo + kThresholds + " --dark-channel --dark-channel-kernel 4", "odd side");
+  fails(kDemo + kThresholds + " --network a=/nonexistent.onnx",
+        "/nonexistent.onnx: cannot be read");
+  fails(kDemo + kThresholds + " --network a.onnx", "--network: expected NAME=FILE");
+  fails(kDemo + kThresholds + " --network-range 1", "expected BLACK:WHITE");
   fails("--sequences twelve --sseq-model /nonexistent", "/nonexistent/feature_range.txt");
   const std::string bag = simulate();
   fails(bag + kThresholds + " --image /none", "/none");
