@@ -7,7 +7,7 @@ if(FAST_EDI_SCALAR)
 endif()
 
 # Its folders, in the order in which each may use those before it.
-set(FAST_EDI_CORE_ROOMS base events integral filters latent video parameters exposure calibration pipeline)
+set(FAST_EDI_CORE_ROOMS base events integral filters latent reblur video parameters exposure calibration pipeline)
 set(FAST_EDI_ROOT ${CMAKE_CURRENT_LIST_DIR}/..)
 
 # Sources of the folders of src/ that a library is made of.
@@ -30,5 +30,5 @@ target_compile_features(fast_edi_core PUBLIC cxx_std_17)
 target_link_libraries(fast_edi_core PUBLIC Eigen3::Eigen)
 # Minima and maxima keep loops from being vectorised as long as their comparisons may have to raise
 # floating-point exceptions, which nothing here looks at. Results are the same.
-file(GLOB pixel_sources CONFIGURE_DEPENDS ${FAST_EDI_ROOT}/src/filters/*.cpp ${FAST_EDI_ROOT}/src/latent/*.cpp)
+file(GLOB pixel_sources CONFIGURE_DEPENDS ${FAST_EDI_ROOT}/src/filters/*.cpp ${FAST_EDI_ROOT}/src/latent/*.cpp ${FAST_EDI_ROOT}/src/reblur/*.cpp)
 set_source_files_properties(${pixel_sources} PROPERTIES COMPILE_OPTIONS -fno-trapping-math)

@@ -183,6 +183,10 @@ std::vector<ConfigKey> filterKeys() {
               [](bool value, ParameterDraft& draft) {
                 draft.loaded.deblur.filter.frame_noise = value;
               }),
+      boolKey({"filter_reblur", "", boolText(defaults.reblur),
+               "deblur what causes no events, too, by the motion that other pixels' events show; "
+               "where that motion does not explain frame and events, nothing changes"},
+              [](bool value, ParameterDraft& draft) { draft.loaded.deblur.filter.reblur = value; }),
       boolKey({"filter_motion", "", boolText(defaults.motion),
                "stabilise images away from mid-exposure by warping the mid-exposure image along "
                "the optical flow: those on `latent/image_raw`, and the deblurred frames if "

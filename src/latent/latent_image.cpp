@@ -75,12 +75,11 @@ void LatentImage::write(const ImageView& blurry, float* gain, const ExposureEven
   gain_filter_->apply(level_dn_.data(), events, gain);
   raiseSaturated(gain);
   // Before the image is written: it may be written over the blurry one.
-  const float noise_dn = parameters_.frame_noise_dn > 0.0
-                             ? static_cast<float>(parameters_.frame_noise_dn)
-                             : noise_estimate_.of(blurry);
+  noise_dn_ = parameters_.frame_noise_dn > 0.0 ? static_cast<float>(parameters_.frame_noise_dn)
+                                               : noise_estimate_.of(blurry);
   response.applyGain(blurry, gain, out);
   if (parameters_.frame_noise) {
-    frame_noise_filter_->apply({out.data, out.size, out.step, out.format}, noise_dn,
+    frame_noise_filter_->apply({out.data, out.size, out.step, out.format}, noise_dn_,
                                gain_filter_->meanCounts(), out);
   }
 }

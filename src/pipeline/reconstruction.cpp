@@ -37,6 +37,12 @@ void Reconstruction::render(const Frame& frame, WindowIntegral& integral, const 
   const MutableImageView image = sink_.begin(input);
   if (image.data != nullptr) {
     latent_image_.write(input.image, integral.gains().data(), counts, parameters.response, image);
+    if (filter.enabled && filter.reblur && parameters.reference == ExposureInstant::kMid &&
+        Reblur::supports(image.format, parameters.response)) {
+      reblur_.apply({frame.window, latent_image_.blurryLevels().data(), latent_image_.meanCounts(),
+                     latent_image_.frameNoise()},
+                    lists, model, parameters.response, image);
+    }
   }
   if (stabilises) {
     const ImageView middle = stabilise(frame, counts, events, parameters, image);
@@ -81,7 +87,7 @@ void Reconstruction::copy(const InputFrame& input) {
 
 std::size_t Reconstruction::memoryBytes() const {
   return fusion_.memoryBytes() + latent_image_.memoryBytes() + video_.memoryBytes() +
-         middle_.memoryBytes() + compensation_.memoryBytes();
+         middle_.memoryBytes() + reblur_.memoryBytes() + compensation_.memoryBytes();
 }
 
 }  // namespace fast_edi

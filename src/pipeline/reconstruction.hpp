@@ -16,6 +16,7 @@
 #include "fast_edi/parameters/parameters.hpp"
 #include "fast_edi/video/latent_video.hpp"
 #include "pipeline/window_integral.hpp"
+#include "reblur/reblur.hpp"
 
 namespace fast_edi {
 
@@ -59,6 +60,7 @@ class Reconstruction {
 
   FrameSink& sink_;
   LatentImage latent_image_;
+  Reblur reblur_;
   MiddleImage middle_;
   MotionCompensation compensation_;
   LatentVideo video_;

@@ -378,6 +378,7 @@ DeblurParameters anyParameters(Random& random) {
   parameters.filter.gain.smooth = chance(random, 50);
   parameters.filter.frame_noise = chance(random, 50);
   parameters.filter.frame_noise_dn = static_cast<double>(uniform(random, 1, 5));
+  parameters.filter.reblur = chance(random, 50);
   parameters.filter.motion = chance(random, 50);
   parameters.passthrough = chance(random, 15);
   return parameters;

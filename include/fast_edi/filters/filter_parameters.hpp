@@ -12,6 +12,7 @@ struct FilterParameters {
   bool frame_noise = true;      ///< take out the frame's own noise, too
   double frame_noise_dn = 0.0;  ///< its standard deviation [8-bit DN]; 0 = measured in each frame
   double temporal = 0.0;        ///< weight of the image before; 0 = off, see TemporalFusion
+  bool reblur = false;          ///< recover what causes no events, see Reblur
   bool motion = true;           ///< stabilise images away from mid-exposure
 };
 

@@ -38,6 +38,15 @@ class LatentImage {
   void write(const ImageView& blurry, float* gain, const ExposureEvents& events,
              const CameraResponse& response, const MutableImageView& out);
 
+  // Of the last write() with filters:
+
+  /// Levels of the blurry frame [8-bit DN], row-major; of several channels the lowest.
+  const std::vector<float>& blurryLevels() const { return level_dn_; }
+  /// Events of each pixel, mean over 3 x 3 pixels.
+  const float* meanCounts() const { return gain_filter_->meanCounts(); }
+  /// Standard deviation of the frame's noise, given or measured [8-bit DN].
+  float frameNoise() const { return noise_dn_; }
+
   std::size_t memoryBytes() const;
 
  private:
@@ -53,6 +62,7 @@ class LatentImage {
   FrameNoiseEstimate noise_estimate_;
   std::vector<float> level_dn_;  ///< of the blurry frame [8-bit DN]; the lowest of its channels
   std::vector<float> channel_dn_;
+  float noise_dn_ = 0.0F;
 };
 
 }  // namespace fast_edi

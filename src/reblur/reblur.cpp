@@ -1,0 +1,122 @@
+#include "reblur/reblur.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/fast_log.hpp"
+#include "base/vector_clones.hpp"
+#include "fast_edi/base/image_plane.hpp"
+
+namespace fast_edi {
+namespace {
+
+/// A shorter path leaves little to gain.
+constexpr float kShortestPath_px = 1.5F;
+/// The margin of the scene is not made larger.
+constexpr float kLongestReach_px = 40.0F;
+constexpr float kLargestDeviation_px = 0.4F;
+/// Instants of the blur: one for so much of the path.
+constexpr float kInstantsApart_px = 1.5F;
+constexpr float kFewestInstants = 5.0F;
+constexpr float kMostInstants = 11.0F;
+/// Added to levels, so that dark ones have a log that means something [DN].
+constexpr float kDark_dn = 3.0F;
+constexpr float kMaxDn8 = 255.0F;
+/// Of the image's sides: the coarsest level has a quarter of it.
+constexpr int kSmallestSide_px = 32;
+
+bool isUsable(const FittedMotion& fitted) {
+  return fitted.found && fitted.path_px >= kShortestPath_px &&
+         fitted.reach_px <= kLongestReach_px && fitted.deviation_px <= kLargestDeviation_px;
+}
+
+std::size_t instantsFor(float path_px) {
+  return static_cast<std::size_t>(
+      std::clamp(std::ceil(path_px / kInstantsApart_px), kFewestInstants, kMostInstants));
+}
+
+FAST_EDI_VECTOR_CLONES
+void logLevels(const float* __restrict level, std::size_t count, float offset,
+               float* __restrict log) {
+  for (std::size_t i = 0; i < count; ++i) {
+    log[i] = fastLog(level[i] + offset);
+  }
+}
+
+void scale(std::vector<float>& values, float by) {
+  if (by != 1.0F) {
+    for (float& value : values) {
+      value *= by;
+    }
+  }
+}
+
+}  // namespace
+
+void Reblur::fitMotion(const Frame& frame, const PixelEventLists& lists,
+                       const LatentGains::Model& model, float offset_dn) {
+  constexpr double kHalf = 0.5;
+  log_.resize(level_dn_.size());
+  logLevels(level_dn_.data(), level_dn_.size(), offset_dn + kDark_dn, log_.data());
+  changes_.measure(lists, frame.window, model);
+  const auto contrast = static_cast<float>(kHalf * (model.thresholds.on + model.thresholds.off));
+  fitted_ = fit_->fit(log_.data(), changes_, frame.mean_counts, contrast);
+}
+
+void Reblur::apply(const Frame& frame, const PixelEventLists& lists,
+                   const LatentGains::Model& model, const CameraResponse& response,
+                   const MutableImageView& image) {
+  constexpr double kHalf = 0.5;
+  if (std::min(image.size.width, image.size.height) < kSmallestSide_px) {
+    trust_.clear(image.size);
+    return;
+  }
+  if (!fit_ || size_ != image.size) {
+    size_ = image.size;
+    fit_ = std::make_unique<MotionFit>(size_);
+  }
+  trust_.clear(size_);
+  const auto dn = static_cast<float>(dnPerDn8(image.format));
+  const auto offset_dn = static_cast<float>(response.offsetDn());
+  level_dn_.resize(size_.pixelCount());
+  loadPlane({image.data, image.size, image.step, image.format}, 0, level_dn_.data());
+  scale(level_dn_, 1.0F / dn);
+  fitMotion(frame, lists, model, offset_dn);
+  if (!isUsable(fitted_)) {
+    return;
+  }
+  blur_.set(fitted_.motion, SceneLayout(size_, fitted_.reach_px), instantsFor(fitted_.path_px));
+  solver_.solve({frame.blurry_dn, level_dn_.data(), frame.mean_counts, frame.noise_dn, offset_dn},
+                blur_);
+  const auto contrast = static_cast<float>(kHalf * (model.thresholds.on + model.thresholds.off));
+  trust_.measure({fitted_.motion, changes_, contrast, frame.noise_dn, offset_dn}, blur_.layout(),
+                 solver_);
+  blend();
+  scale(level_dn_, dn);
+  storePlane(level_dn_.data(), 0, image);
+}
+
+/// Adds the correction as far as it is trusted. Where it is not at all, levels stay whole numbers
+/// of the image's own unit, whose bits come back.
+void Reblur::blend() {
+  const SceneLayout& layout = blur_.layout();
+  const auto width = static_cast<std::size_t>(size_.width);
+  for (std::size_t y = 0; y < layout.rows(); ++y) {
+    const float* given = solver_.given().data() + layout.inScene(0, y);
+    const float* solution = solver_.solution().data() + layout.inScene(0, y);
+    const float* trust = trust_.trust().data() + y * width;
+    float* level = level_dn_.data() + y * width;
+    for (std::size_t x = 0; x < width; ++x) {
+      const float moved = level[x] + trust[x] * (solution[x] - given[x]);
+      level[x] = std::clamp(moved, 0.0F, kMaxDn8);
+    }
+  }
+}
+
+std::size_t Reblur::memoryBytes() const {
+  return changes_.memoryBytes() + (fit_ ? fit_->memoryBytes() : 0) + blur_.memoryBytes() +
+         solver_.memoryBytes() + trust_.memoryBytes() +
+         (level_dn_.capacity() + log_.capacity()) * sizeof(float);
+}
+
+}  // namespace fast_edi

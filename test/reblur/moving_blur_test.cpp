@@ -1,0 +1,110 @@
+#include "reblur/moving_blur.hpp"
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace fast_edi {
+namespace {
+
+constexpr SensorSize kSize{53, 40};  // not of whole blocks
+
+ImageMotion turning() {
+  ImageMotion motion(kSize);
+  motion.velocity = {3.3F, -1.7F, 0.4F, 0.8F, 0.3F, -0.2F};
+  motion.curvature = {-0.6F, 0.9F, 0.0F, -0.1F, 0.0F, 0.1F};
+  return motion;
+}
+
+MovingBlur blurOf(const ImageMotion& motion, std::size_t instants) {
+  MovingBlur blur;
+  blur.set(motion, SceneLayout(kSize, 7.0F), instants);
+  return blur;
+}
+
+std::vector<float> noise(std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> level(0.0F, 255.0F);
+  std::vector<float> plane(count);
+  for (float& value : plane) value = level(random);
+  return plane;
+}
+
+double dot(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += static_cast<double>(a[i]) * static_cast<double>(b[i]);
+  }
+  return sum;
+}
+
+TEST(MovingBlurTest, WithoutMotionTheImageIsTheScene) {
+  MovingBlur blur = blurOf(ImageMotion(kSize), 5);
+  const SceneLayout& layout = blur.layout();
+  const std::vector<float> scene = noise(layout.sceneFloats(), 1);
+  std::vector<float> image(layout.imageFloats());
+  blur.apply(scene.data(), image.data());
+  for (std::size_t y = 0; y < layout.rows(); ++y) {
+    for (std::size_t x = 0; x < static_cast<std::size_t>(kSize.width); ++x) {
+      ASSERT_FLOAT_EQ(image[y * layout.stride() + x], scene[layout.inScene(x, y)]);
+    }
+  }
+}
+
+TEST(MovingBlurTest, TheTransposedOperatorIsTheTransposedOne) {
+  MovingBlur blur = blurOf(turning(), 6);
+  const SceneLayout& layout = blur.layout();
+  std::vector<float> scene = noise(layout.sceneFloats(), 2);
+  // No tap reaches the first and last row.
+  std::fill_n(scene.begin(), layout.sceneStride(), 0.0F);
+  std::fill_n(scene.end() - static_cast<std::ptrdiff_t>(layout.sceneStride()), layout.sceneStride(),
+              0.0F);
+  std::vector<float> image = noise(layout.imageFloats(), 3);
+  std::vector<float> blurred(layout.imageFloats());
+  std::vector<float> spread(layout.sceneFloats());
+  blur.apply(scene.data(), blurred.data());
+  blur.applyTransposed(image.data(), spread.data());
+  const double expected = dot(blurred, image);
+  EXPECT_NEAR(dot(scene, spread), expected, 1e-5 * expected);
+}
+
+// cos(k x) moved by u and averaged over the path is known in closed form.
+TEST(MovingBlurTest, AWaveIsDampedAsOverItsPath) {
+  constexpr double kWave = 0.7;  // rad/px
+  ImageMotion motion(kSize);
+  motion.velocity = {2.9F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F};
+  MovingBlur blur = blurOf(motion, 11);
+  const SceneLayout& layout = blur.layout();
+  std::vector<float> scene(layout.sceneFloats());
+  for (std::size_t y = 0; y < layout.sceneRows(); ++y) {
+    for (std::size_t x = 0; x < layout.sceneStride(); ++x) {
+      const double from_image = static_cast<double>(x) - static_cast<double>(layout.margin());
+      scene[y * layout.sceneStride() + x] =
+          static_cast<float>(100.0 + 80.0 * std::cos(kWave * from_image));
+    }
+  }
+  std::vector<float> image(layout.imageFloats());
+  blur.apply(scene.data(), image.data());
+  const double half_path = kWave * 2.9;
+  for (std::size_t x = 0; x < static_cast<std::size_t>(kSize.width); ++x) {
+    const double expected =
+        100.0 + 80.0 * std::sin(half_path) / half_path * std::cos(kWave * static_cast<double>(x));
+    ASSERT_NEAR(static_cast<double>(image[layout.stride() + x]), expected, 0.8) << x;
+  }
+}
+
+TEST(SceneLayoutTest, DisplacementsBeyondTheMarginAreCutOff) {
+  const SceneLayout layout(kSize, 7.0F);
+  for (const float far : {-1e6F, 1e6F}) {
+    const SceneLayout::Tap tap = layout.tap(0, 0, {far, far});
+    EXPECT_GE(tap.offset, 0);
+    const SceneLayout::Tap last = layout.tap(layout.blocks() - 1, layout.rows() - 1, {far, far});
+    EXPECT_LT(static_cast<std::size_t>(last.offset) + layout.sceneStride() + kFloatBlock,
+              layout.sceneFloats());
+  }
+}
+
+}  // namespace
+}  // namespace fast_edi
