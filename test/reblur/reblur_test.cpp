@@ -62,7 +62,7 @@ TEST(ReblurTest, SupportsMonochromeImagesOfALinearResponse) {
   EXPECT_TRUE(Reblur::supports(PixelFormat::kMono8, CameraResponse::linear()));
   EXPECT_TRUE(Reblur::supports(PixelFormat::kMono16, CameraResponse::linear(3.0)));
   EXPECT_FALSE(Reblur::supports(PixelFormat::kBayer8, CameraResponse::linear()));
-  EXPECT_FALSE(Reblur::supports(PixelFormat::kColor8, CameraResponse::linear()));
+  EXPECT_FALSE(Reblur::supports(PixelFormat::kColour8, CameraResponse::linear()));
   std::vector<double> table(256);
   for (std::size_t i = 0; i < table.size(); ++i) table[i] = 0.02 * static_cast<double>(i);
   EXPECT_FALSE(Reblur::supports(PixelFormat::kMono8, CameraResponse::fromTable(table)));
