@@ -231,8 +231,9 @@ MotionFit::Sums MotionFit::sumAt(const Level& level, std::size_t instant, float 
     plane.clear();
   }
   for (const std::uint32_t pixel : level.chosen) {
+    const std::uint32_t pixel_row = pixel / width;
     const auto column = static_cast<float>(pixel % width);
-    const auto row = static_cast<float>(pixel / width);
+    const auto row = static_cast<float>(pixel_row);
     const float at_x = (column + kHalf) * scale - kHalf;  // at full resolution
     const float at_y = (row + kHalf) * scale - kHalf;
     const Displacement u = motion.displace(c, at_x, at_y);
@@ -245,7 +246,7 @@ MotionFit::Sums MotionFit::sumAt(const Level& level, std::size_t instant, float 
     const auto top = static_cast<std::uint32_t>(y);
     const float fx = x - static_cast<float>(left);
     const float fy = y - static_cast<float>(top);
-    const Texel* upper = level.texels.data() + top * width + left;
+    const Texel* upper = level.texels.data() + std::size_t{top} * width + left;
     const Texel* lower = upper + width;
     const auto between = [&](float Texel::*part) {
       const float above = upper[0].*part + fx * (upper[1].*part - upper[0].*part);

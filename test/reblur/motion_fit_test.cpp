@@ -59,43 +59,43 @@ class MotionFitTest : public ::testing::Test {
       for (int x = 0; x < kPlaneSize.width; ++x) {
         log_image.push_back(
             std::log(static_cast<float>(frame.sharp.at<std::uint8_t>(y, x)) + 3.0F));
-        const auto i = static_cast<std::size_t>(y * kPlaneSize.width + x);
+        const auto i = static_cast<std::size_t>(y) * kPlaneSize.width + static_cast<std::size_t>(x);
         mean_counts[i] = static_cast<float>(counts.off(i) + counts.on(i));
       }
     }
     EventChanges changes;
     changes.measure(lists, frame.exposure,
                     {settings.sensor.thresholds, {4 * kNanosecondsPerMillisecond, 0.85}});
-    fitted = MotionFit(kPlaneSize)
-                 .fit(log_image.data(), changes, mean_counts.data(),
-                      static_cast<float>(settings.sensor.thresholds.on));
-    exposure = frame.exposure;
+    fitted_ = MotionFit(kPlaneSize)
+                  .fit(log_image.data(), changes, mean_counts.data(),
+                       static_cast<float>(settings.sensor.thresholds.on));
+    exposure_ = frame.exposure;
   }
 
-  FittedMotion fitted;
-  ExposureInterval exposure;
+  FittedMotion fitted_;
+  ExposureInterval exposure_;
 };
 
 TEST_F(MotionFitTest, FindsAPathThatCurves) {
   const SimulationSettings settings = testing::movingPlane(MotionKind::kMild, 4.0);
   fit(settings);
-  ASSERT_TRUE(fitted.found);
-  EXPECT_GT(fitted.path_px, 2.0F);
-  EXPECT_LT(errorOf(fitted.motion, settings, exposure), 0.4);
-  EXPECT_LT(fitted.deviation_px, 0.4F);
+  ASSERT_TRUE(fitted_.found);
+  EXPECT_GT(fitted_.path_px, 2.0F);
+  EXPECT_LT(errorOf(fitted_.motion, settings, exposure_), 0.4);
+  EXPECT_LT(fitted_.deviation_px, 0.4F);
 }
 
 TEST_F(MotionFitTest, FindsARotation) {
   const SimulationSettings settings = testing::movingPlane(MotionKind::kSpin, 1.0);
   fit(settings);
-  ASSERT_TRUE(fitted.found);
-  EXPECT_LT(errorOf(fitted.motion, settings, exposure), 0.4);
+  ASSERT_TRUE(fitted_.found);
+  EXPECT_LT(errorOf(fitted_.motion, settings, exposure_), 0.4);
 }
 
 TEST_F(MotionFitTest, FindsNothingWhereNothingMoves) {
   fit(testing::movingPlane(MotionKind::kStill, 1.0));
-  EXPECT_FALSE(fitted.found);
-  EXPECT_EQ(fitted.path_px, 0.0F);
+  EXPECT_FALSE(fitted_.found);
+  EXPECT_EQ(fitted_.path_px, 0.0F);
 }
 
 }  // namespace

@@ -51,7 +51,8 @@ TEST(ReblurTest, AStillBackgroundBehindAMovingDiscIsNotSharpened) {
   int changed = 0;
   for (int y = 0; y < testing::kPlaneSize.height; ++y) {
     for (int x = kBehind_px + 25; x < testing::kPlaneSize.width; ++x) {
-      const auto i = static_cast<std::size_t>(y * testing::kPlaneSize.width + x);
+      const auto i =
+          static_cast<std::size_t>(y) * testing::kPlaneSize.width + static_cast<std::size_t>(x);
       changed += std::abs(gain.with[i] - gain.without[i]) > 2 ? 1 : 0;
     }
   }
