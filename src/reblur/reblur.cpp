@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/fast_log.hpp"
-#include "base/vector_clones.hpp"
 #include "fast_edi/base/image_plane.hpp"
+#include "reblur/log_levels.hpp"
 
 namespace fast_edi {
 namespace {
@@ -19,8 +18,6 @@ constexpr float kLargestDeviation_px = 0.4F;
 constexpr float kInstantsApart_px = 1.5F;
 constexpr float kFewestInstants = 5.0F;
 constexpr float kMostInstants = 11.0F;
-/// Added to levels, so that dark ones have a log that means something [DN].
-constexpr float kDark_dn = 3.0F;
 constexpr float kMaxDn8 = 255.0F;
 /// Of the image's sides: the coarsest level has a quarter of it.
 constexpr int kSmallestSide_px = 32;
@@ -33,14 +30,6 @@ bool isUsable(const FittedMotion& fitted) {
 std::size_t instantsFor(float path_px) {
   return static_cast<std::size_t>(
       std::clamp(std::ceil(path_px / kInstantsApart_px), kFewestInstants, kMostInstants));
-}
-
-FAST_EDI_VECTOR_CLONES
-void logLevels(const float* __restrict level, std::size_t count, float offset,
-               float* __restrict log) {
-  for (std::size_t i = 0; i < count; ++i) {
-    log[i] = fastLog(level[i] + offset);
-  }
 }
 
 void scale(std::vector<float>& values, float by) {
@@ -57,7 +46,7 @@ void Reblur::fitMotion(const Frame& frame, const PixelEventLists& lists,
                        const LatentGains::Model& model, float offset_dn) {
   constexpr double kHalf = 0.5;
   log_.resize(level_dn_.size());
-  logLevels(level_dn_.data(), level_dn_.size(), offset_dn + kDark_dn, log_.data());
+  logLevels(level_dn_.data(), level_dn_.size(), offset_dn, log_.data());
   changes_.measure(lists, frame.window, model);
   const auto contrast = static_cast<float>(kHalf * (model.thresholds.on + model.thresholds.off));
   fitted_ = fit_->fit(log_.data(), changes_, frame.mean_counts, contrast);

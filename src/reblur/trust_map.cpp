@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "base/fast_log.hpp"
 #include "base/vector_clones.hpp"
+#include "reblur/log_levels.hpp"
 
 namespace fast_edi {
 namespace {
@@ -31,16 +31,6 @@ constexpr float kLeastSquare = 1e-3F;  ///< [DN^2]
 
 constexpr float kPart = 0.3F;   ///< of the larger change
 constexpr float kSteep = 0.5F;  ///< of the differences around
-/// Added to levels, so that dark ones have a log that means something [DN].
-constexpr float kDark_dn = 3.0F;
-
-FAST_EDI_VECTOR_CLONES
-void logLevels(const float* __restrict level, std::size_t count, float offset,
-               float* __restrict log) {
-  for (std::size_t i = 0; i < count; ++i) {
-    log[i] = fastLog(std::max(0.0F, level[i]) + offset);
-  }
-}
 
 using MaskBlock = std::int32_t __attribute__((vector_size(kFloatBlock * sizeof(std::int32_t))));
 
@@ -202,7 +192,7 @@ void TrustMap::findContradictions(const Input& input, const SceneLayout& layout,
                                   const std::vector<float>& scene) {
   const auto width = static_cast<std::size_t>(layout.size().width);
   log_scene_.resize(scene.size());
-  logLevels(scene.data(), scene.size(), input.offset_dn + kDark_dn, log_scene_.data());
+  logLevels(scene.data(), scene.size(), input.offset_dn, log_scene_.data());
   could_.assign(layout.imageFloats(), 0);
   does_.assign(layout.imageFloats(), 0);
   padded_change_.assign(layout.stride(), 0.0F);
