@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include <opencv2/imgproc.hpp>
 
@@ -49,8 +50,11 @@ bool hasNoticeableDistortion(const cv::Mat1d& block) {
 bool hasNoise(const cv::Mat1d& block, double deviation) {
   const int middle = kPiqeBlockPx / 2;
   const cv::Mat1d centre = block.colRange(middle - 1, middle + 1);
+  // See step 3: the right column of the centre counts here, too, and its neighbour does not.
   cv::Mat1d surround;
-  cv::hconcat(block.colRange(0, middle - 1), block.colRange(middle + 1, kPiqeBlockPx), surround);
+  cv::hconcat(std::vector<cv::Mat>{block.colRange(0, middle - 1), block.col(middle),
+                                   block.colRange(middle + 2, kPiqeBlockPx)},
+              surround);
   const double surround_deviation = sampleDeviation(surround);
   const double ratio =
       surround_deviation > 0.0 ? sampleDeviation(centre) / surround_deviation : 0.0;

@@ -10,7 +10,9 @@
 /// 3. An active block has a *noticeable distortion* (blocking, blur) when one of the segments of 6
 ///    pixels along its four edges has a standard deviation below 0.1, and *noise* when
 ///    sigma > 2 beta, beta = |sigma - r| / max(sigma, r), sigma^2 = v, r = deviation of the two
-///    central columns over that of the other columns.
+///    central columns (8 and 9 of 16) over that of the columns around them. These are all but 8 and
+///    10: the program that is in use (MATLAB's `piqe`) takes column 8 out, and then the ninth of
+///    those that remain. Scores are comparable only if that is kept.
 /// 4. A block's distortion is D = (1 - v) [noticeable] + v [noise];
 ///    score = 100 (sum D + 1) / (active blocks + 1).
 ///

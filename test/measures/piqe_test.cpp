@@ -55,6 +55,25 @@ TEST(PiqeBlockTest, AFlatSegmentOnAnEdgeIsANoticeableDistortion) {
   EXPECT_NEAR(result.distortion(), 1.0 - result.variance, 1e-12);
 }
 
+/// Whether a checkerboard of \p amplitude is noise when a column, counted from 1, is multiplied.
+bool isNoiseWithColumn(double amplitude, int column, double factor) {
+  cv::Mat1d coefficients = block([](int x, int y) { return (x + y) % 2 == 0 ? 1.0 : -1.0; });
+  coefficients *= amplitude;
+  coefficients.col(column - 1) *= factor;
+  return assessPiqeBlock(coefficients).noise;
+}
+
+// It is noise for sigma > 2 r / (r + 2), as long as sigma < r.
+TEST(PiqeBlockTest, ColumnTenIsNeitherCentreNorSurround) {
+  EXPECT_TRUE(isNoiseWithColumn(0.70, 10, 0.0)) << "sigma = 0.679, r = 1.014: above 0.673";
+  EXPECT_FALSE(isNoiseWithColumn(0.70, 12, 0.0)) << "sigma = 0.679, r = 1.052: below 0.689";
+}
+
+TEST(PiqeBlockTest, ColumnNineIsBothCentreAndSurround) {
+  // sigma = 0.862; r = 1.455: above 0.842. Without column 9 in the surround r = 1.603: below 0.890.
+  EXPECT_TRUE(isNoiseWithColumn(0.79, 9, 2.0));
+}
+
 TEST(PiqeBlockTest, ThresholdOfActivityIsAVarianceOfOneTenth) {
   const double at_threshold = std::sqrt(0.1 / kSampleFactor);
   cv::Mat1d coefficients = block([](int x, int y) { return (x + y) % 2 == 0 ? 1.0 : -1.0; });
