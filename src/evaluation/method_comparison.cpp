@@ -57,7 +57,7 @@ class SearchingEdi {
     if (!stream_.seen() || stream_.lists()->size() != size || !stream_.covers(window)) {
       return result;
     }
-    const std::int64_t reference_ns = window.at(ExposureInstant::kMid);
+    const std::int64_t reference_ns = window.at(parameters_.reference);
     const cv::Mat1f edges =
         eventEdgeMap(eventsIn(window), size, reference_ns,
                      std::max<std::int64_t>(1, window.length() / kDecaysPerExposure));
@@ -127,7 +127,6 @@ const char* toString(Method method) {
 
 DeblurParameters parametersOf(Method method, const DeblurParameters& ours) {
   DeblurParameters parameters = ours;
-  parameters.reference = ExposureInstant::kMid;
   parameters.filter.enabled = parameters.filter.enabled && method == Method::kOurs;
   if (method != Method::kOurs) {
     parameters.filter.enabled = false;

@@ -60,8 +60,8 @@ class MethodComparison {
  public:
   using Sink = std::function<void(const ComparedFrame&)>;
 
-  /// \param parameters `reference` is ignored: latent images show mid-exposure, where truth is
-  /// known \throws std::invalid_argument naming the parameter that is out of range
+  /// \param parameters all methods show their `reference`, the instant at which truth is wanted
+  /// \throws std::invalid_argument naming the parameter that is out of range
   MethodComparison(const DeblurParameters& parameters, const ContrastSearchOptions& search,
                    Sink sink);
   ~MethodComparison();

@@ -14,7 +14,7 @@ namespace fast_edi {
 class OtherMethod {
  public:
   struct Frame {
-    std::int64_t stamp_ns = 0;        ///< of the latent image: mid-exposure
+    std::int64_t stamp_ns = 0;        ///< of the latent image, by the parameter `reference`
     std::int64_t input_stamp_ns = 0;  ///< of the frame as recorded
     cv::Mat blurry;                   ///< CV_8UC1
   };

@@ -34,7 +34,8 @@ class WireArrays {
   std::uint32_t sequence_ = 0;
 };
 
-/// \p parameters with the simulated sensor's thresholds, times \p threshold_factor, and exposure.
+/// \p parameters with the simulated sensor's thresholds, times \p threshold_factor, and exposure;
+/// latent images show mid-exposure, where truth is known.
 inline DeblurParameters sensorParameters(const DeblurParameters& parameters,
                                          const SimulationSettings& settings,
                                          double threshold_factor) {
@@ -44,6 +45,7 @@ inline DeblurParameters sensorParameters(const DeblurParameters& parameters,
   known.exposure_source = ExposureSource::kParameter;
   known.exposure_time_ns = settings.timing.exposure_us * kNanosecondsPerMicrosecond;
   known.stamp_reference = ExposureInstant::kMid;
+  known.reference = ExposureInstant::kMid;  // of the true frames
   known.time_offset_ns = 0;
   known.response = CameraResponse::linear();
   return known;

@@ -157,7 +157,7 @@ po::options_description describeOptions(Arguments& arguments) {
   auto add_recording = recording.add_options();
   tools::addTopicOptions(recording, topics);
   add_recording("truth", textOption(arguments.truth_topic, "TOPIC"),
-                "true sharp frames, stamped mid-exposure; may be missing");
+                "true sharp frames, stamped with the instant that they show; may be missing");
   add_recording("column", po::value(&arguments.columns)->value_name("NAME=OUT.bag[:TOPIC]"),
                 "frames of another program as a further method, matched by their stamps; TOPIC: by "
                 "default where deblur_bag writes; may be repeated");
@@ -199,7 +199,8 @@ tools::HelpText helpText() {
       "on standard output, report with pictures in a folder. Parameters given as name:=value come "
       "before the "
       "YAML file's.\n"
-      "Latent images are taken at mid-exposure. Colour is turned to grey first; raw Bayer\n"
+      "Latent images show the instant that the parameter reference names. Colour is turned to grey "
+      "first; raw Bayer\n"
       "frames are measured as they are. --force removes the earlier report of a folder.\n",
       "0 done; 1 failed; 2 the recording was cut short or damaged."};
 }
@@ -400,10 +401,12 @@ int evaluateBag(const Arguments& arguments) {
   const fast_edi::RecordedFrames truth =
       fast_edi::readFrames(arguments.recordings, arguments.truth_topic);
   const fast_edi::FrameScorer scorer(arguments.scorer);
+  int without_truth = 0;
   fast_edi::EvaluationRecorder recorder(
       std::filesystem::path(arguments.recordings.front()).filename().string(), scorer,
-      [&truth](std::int64_t stamp_ns) {
+      [&truth, &without_truth](std::int64_t stamp_ns) {
         const auto found = fast_edi::frameAt(truth.by_stamp, stamp_ns);
+        without_truth += found == truth.by_stamp.end() ? 1 : 0;
         return found != truth.by_stamp.end() ? found->second : cv::Mat();
       },
       others);
@@ -428,6 +431,10 @@ int evaluateBag(const Arguments& arguments) {
                   "; searched: " + decimal(evaluation.meanSearchedContrast()) + " in the mean");
   if (truth.by_stamp.empty()) {
     notes.push_back("No true frames on " + arguments.truth_topic + ": no PSNR, no SSIM");
+  } else if (without_truth > 0) {
+    notes.push_back(std::to_string(without_truth) + " frames without a true frame on " +
+                    arguments.truth_topic +
+                    " that has the stamp of the latent image (see the parameter reference)");
   }
   for (const auto& [reason, count] : evaluation.left_out) {
     notes.push_back(std::to_string(count) + " frames left out: " + reason);

@@ -71,6 +71,7 @@ struct RecordingOptions {
   std::string encoding = encodings::MONO8;
   std::string compression = "none";
   ExposureInstant stamp = ExposureInstant::kMid;
+  ExposureInstant truth = ExposureInstant::kMid;
   std::int64_t array_length_us = 10'000;
   bool overwrite = false;
   bool exposure_topic = true;
@@ -126,6 +127,7 @@ class Recording {
  public:
   Recording(const RecordingOptions& options, const DavisSimulator& simulator)
       : options_(options),
+        simulator_(simulator),
         writer_(options.path, {}, options.compression, options.overwrite),
         timing_(simulator.settings().timing),
         faulty_(options.faults, simulator.settings().sensor.size, timing_),
@@ -224,8 +226,10 @@ class Recording {
       enqueue("/image_raw", time_ns, makeImage(frame.blurry, frame_stamp_ns_));
     }
     if (options_.ground_truth_topic) {
-      enqueue("/ground_truth/image_raw", time_ns,
-              makeImage(frame.sharp, faulty_.frameStamp(frame.exposure.at(ExposureInstant::kMid))));
+      const std::int64_t truth_ns = frame.exposure.at(options_.truth);
+      const cv::Mat truth =
+          options_.truth == ExposureInstant::kMid ? frame.sharp : simulator_.latentAt(truth_ns);
+      enqueue("/ground_truth/image_raw", time_ns, makeImage(truth, faulty_.frameStamp(truth_ns)));
       if (frame.pose) {
         const std::int64_t middle_ns = frame.exposure.at(ExposureInstant::kMid);
         enqueue("/ground_truth/pose", time_ns, makePose(*frame.pose, middle_ns));
@@ -287,6 +291,7 @@ class Recording {
   }
 
   RecordingOptions options_;
+  const DavisSimulator& simulator_;
   fast_edi::BagWriter writer_;
   sensor_msgs::CameraInfo camera_info_;
   fast_edi::ImuSettings imu_settings_;
@@ -354,11 +359,11 @@ void applyEncoding(const std::string& encoding, SensorSettings& sensor) {
   }
 }
 
-ExposureInstant stampFromName(const std::string& name) {
+ExposureInstant instantFromName(const std::string& option, const std::string& name) {
   if (name == "start") return ExposureInstant::kStart;
   if (name == "mid") return ExposureInstant::kMid;
   if (name == "end") return ExposureInstant::kEnd;
-  throw std::invalid_argument("--stamp: expected start, mid or end, got \"" + name + "\"");
+  throw std::invalid_argument(option + ": expected start, mid or end, got \"" + name + "\"");
 }
 
 /// An option that overwrites \p target when given; the help shows the value it has now.
@@ -468,6 +473,7 @@ int run(int argc, char** argv) {
   std::string hot_shape = "single";
   std::string motion = "shake";
   std::string stamp = "mid";
+  std::string truth = "mid";
   double duration_s = 0.0;
 
   po::options_description output("Recording");
@@ -484,6 +490,9 @@ int run(int argc, char** argv) {
   addOption(output, "stamp", stamp,
             "instant of the exposure that an image's stamp means: mid (davis_ros_driver), start "
             "(dv-ros) or end");
+  addOption(output, "truth", truth,
+            "instant of the exposure that the true frames show and are stamped with: start, mid or "
+            "end");
   addOption(output, "array-us", options.array_length_us, "length of an event array [us]");
   output.add_options()("no-exposure", "leave out the exposure topic");
   output.add_options()("no-camera-info", "leave out the camera_info topic");
@@ -597,7 +606,7 @@ int run(int argc, char** argv) {
       argc, argv, all,
       {"Usage: simulate_davis --out PATH [options]\n\n"
        "Simulates a DAVIS moving over a textured plane and writes events, blurry frames, exposure\n"
-       "times and true sharp frames (at mid-exposure) as davis_ros_driver would have recorded "
+       "times and true sharp frames as davis_ros_driver would have recorded "
        "them.\nIn a room also IMU readings and true poses: world with z up, camera and IMU at one "
        "place in\nthe optical frame (x right, y down, z forward), with the same pose at the start "
        "and the end.\n",
@@ -630,7 +639,8 @@ int run(int argc, char** argv) {
         std::lround(duration_s * 1e6 / static_cast<double>(settings.timing.period_us)));
   }
   applyEncoding(options.encoding, settings.sensor);
-  options.stamp = stampFromName(stamp);
+  options.stamp = instantFromName("--stamp", stamp);
+  options.truth = instantFromName("--truth", truth);
   if (values.count("fault") != 0) {
     for (const std::string& fault : values["fault"].as<std::vector<std::string>>()) {
       fast_edi::plantFault(fault, options.faults);

@@ -122,7 +122,7 @@ TEST_F(MethodComparisonTest, ErrorsOfTheReceiverReachTheCaller) {
   EXPECT_THROW(failing.finish(), std::runtime_error);
 }
 
-TEST(ParametersOfTest, OnlyOursIsFilteredAndAllShowMidExposure) {
+TEST(ParametersOfTest, OnlyOursIsFilteredAndAllShowTheSameInstant) {
   DeblurParameters ours = parameters();
   ours.filter.enabled = true;
   ours.reference = ExposureInstant::kStart;
@@ -132,7 +132,7 @@ TEST(ParametersOfTest, OnlyOursIsFilteredAndAllShowMidExposure) {
   EXPECT_FALSE(parametersOf(Method::kPlain, ours).filter.enabled);
   EXPECT_TRUE(parametersOf(Method::kOurs, ours).filter.enabled);
   for (const Method method : {Method::kPlain, Method::kCounter, Method::kOurs}) {
-    EXPECT_EQ(parametersOf(method, ours).reference, ExposureInstant::kMid);
+    EXPECT_EQ(parametersOf(method, ours).reference, ExposureInstant::kStart);
     EXPECT_EQ(parametersOf(method, ours).thresholds, ours.thresholds);
   }
 }

@@ -94,6 +94,19 @@ TEST_F(EvaluateTest, WithoutTruthItSaysSo) {
   EXPECT_THAT(result.output, Not(HasSubstr("| PSNR")));
 }
 
+TEST_F(EvaluateTest, MethodsAreJudgedAtTheInstantThatTheParameterNames) {
+  const std::string options = kThresholds + " --full-reference-only --force";
+  const CommandResult start = evaluate(simulate("--truth start") + options + " reference:=start");
+  ASSERT_EQ(start.exit_code, 0) << start.output;
+  EXPECT_THAT(start.output, HasSubstr("| PSNR [dB] |"));
+  EXPECT_THAT(start.output, Not(HasSubstr("without a true frame")));
+  const CommandResult middle = evaluate(directory_.file("short.bag") + options);
+  ASSERT_EQ(middle.exit_code, 0) << middle.output;
+  EXPECT_THAT(middle.output, Not(HasSubstr("| PSNR [dB] |")));
+  EXPECT_THAT(middle.output, HasSubstr("3 frames without a true frame on "
+                                       "/dvs/ground_truth/image_raw that has the stamp"));
+}
+
 TEST_F(EvaluateTest, FramesOfAnotherProgramAreAColumn) {
   const std::string bag = simulate();
   const std::string out = directory_.file("out.bag");
