@@ -492,7 +492,7 @@ int run(int argc, char** argv) {
             "(dv-ros) or end");
   addOption(output, "truth", truth,
             "instant of the exposure that the true frames show and are stamped with: start, mid or "
-            "end");
+            "end; true poses are those of mid");
   addOption(output, "array-us", options.array_length_us, "length of an event array [us]");
   output.add_options()("no-exposure", "leave out the exposure topic");
   output.add_options()("no-camera-info", "leave out the camera_info topic");
