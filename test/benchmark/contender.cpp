@@ -10,7 +10,6 @@ namespace fast_edi::benchmarks {
 
 namespace {
 
-constexpr ContrastThresholds kThresholds{0.3, 0.3};
 /// More than any benchmark buffers, so that none of them measures an overflow.
 constexpr std::size_t kMaxBufferedEvents = 40'000'000;
 
@@ -28,7 +27,8 @@ class MemorySink : public FrameSink {
 
 class Ours : public Contender {
  public:
-  Ours(SensorSize size, bool filter) : size_(size), deblurrer_(parameters(filter), sink_) {}
+  Ours(SensorSize size, ContrastThresholds thresholds, Method method)
+      : size_(size), deblurrer_(parameters(thresholds, method), sink_) {}
 
   void begin(const ExposureInterval&) override {}
   void add(const WireEvents& events) override {
@@ -71,11 +71,12 @@ class Ours : public Contender {
   }
 
  private:
-  static DeblurParameters parameters(bool filter) {
+  static DeblurParameters parameters(ContrastThresholds thresholds, Method method) {
     DeblurParameters parameters;
-    parameters.thresholds = kThresholds;
+    parameters.thresholds = thresholds;
     parameters.max_buffered_events = kMaxBufferedEvents;
-    parameters.filter.enabled = filter;
+    parameters.filter.enabled = method != Method::kOurs;
+    parameters.filter.reblur = method == Method::kOursReblur;
     return parameters;
   }
 
@@ -89,7 +90,8 @@ class Ours : public Contender {
 
 class Paper : public Contender {
  public:
-  explicit Paper(SensorSize size) : lists_(size, kThresholds, Weighting::kCounter) {}
+  Paper(SensorSize size, ContrastThresholds thresholds)
+      : lists_(size, thresholds, Weighting::kCounter) {}
 
   void begin(const ExposureInterval&) override {}
   void add(const WireEvents& events) override { lists_.add(events); }
@@ -106,7 +108,7 @@ class Paper : public Contender {
 
 class Vanilla : public Contender {
  public:
-  explicit Vanilla(SensorSize size) : edi_(size, kThresholds) {}
+  Vanilla(SensorSize size, ContrastThresholds thresholds) : edi_(size, thresholds) {}
 
   void begin(const ExposureInterval& exposure) override {
     edi_.begin(exposure, exposure.at(ExposureInstant::kMid));
@@ -142,6 +144,8 @@ const char* toString(Method method) {
       return "ours";
     case Method::kOursFiltered:
       return "ours_filtered";
+    case Method::kOursReblur:
+      return "ours_reblur";
     case Method::kPaper:
       return "paper";
     case Method::kVanilla:
@@ -150,16 +154,17 @@ const char* toString(Method method) {
   return "unknown";
 }
 
-std::unique_ptr<Contender> makeContender(Method method, SensorSize size) {
+std::unique_ptr<Contender> makeContender(Method method, SensorSize size,
+                                         ContrastThresholds thresholds) {
   switch (method) {
     case Method::kOurs:
-      return std::make_unique<Ours>(size, false);
     case Method::kOursFiltered:
-      return std::make_unique<Ours>(size, true);
+    case Method::kOursReblur:
+      return std::make_unique<Ours>(size, thresholds, method);
     case Method::kPaper:
-      return std::make_unique<Paper>(size);
+      return std::make_unique<Paper>(size, thresholds);
     case Method::kVanilla:
-      return std::make_unique<Vanilla>(size);
+      return std::make_unique<Vanilla>(size, thresholds);
   }
   throw std::invalid_argument("no such method");
 }

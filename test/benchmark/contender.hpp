@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "fast_edi/base/contrast_threshold.hpp"
 #include "fast_edi/base/types.hpp"
 #include "fast_edi/events/event_wire.hpp"
 
@@ -42,11 +43,15 @@ class Contender {
 enum class Method {
   kOurs,          ///< the whole pipeline (Deblurrer), time weighting, plain EDI
   kOursFiltered,  ///< the same with the default filters
+  kOursReblur,    ///< and with filter_reblur
   kPaper,         ///< std::vector per pixel of <t, exp value, counter>
   kVanilla,       ///< the whole image added at every event
 };
 const char* toString(Method method);
 
-std::unique_ptr<Contender> makeContender(Method method, SensorSize size);
+constexpr ContrastThresholds kUsualThresholds{0.3, 0.3};
+
+std::unique_ptr<Contender> makeContender(Method method, SensorSize size,
+                                         ContrastThresholds thresholds = kUsualThresholds);
 
 }  // namespace fast_edi::benchmarks

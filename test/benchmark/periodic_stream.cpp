@@ -16,8 +16,19 @@ PeriodicStream::PeriodicStream(const StreamSettings& settings)
     : settings_(settings), start_ns_(kFirstStart_ns) {
   const auto count = static_cast<std::size_t>(
       static_cast<std::int64_t>(settings.events_per_exposure) * kPeriod_ns / kExposure_ns);
-  const std::vector<Event> events =
-      testing::makeEvents(settings.scene, {settings.size, count, start_ns_, kPeriod_ns, kSeed});
+  pack(testing::makeEvents(settings.scene, {settings.size, count, start_ns_, kPeriod_ns, kSeed}));
+}
+
+PeriodicStream::PeriodicStream(SensorSize size, std::vector<Event> events)
+    : start_ns_(kFirstStart_ns) {
+  settings_.size = size;
+  for (Event& event : events) {
+    event.t_ns += start_ns_;
+  }
+  pack(events);
+}
+
+void PeriodicStream::pack(const std::vector<Event>& events) {
   wire_ = testing::toWire(events);
   for (std::int64_t begin_ns = 0; begin_ns <= kPeriod_ns; begin_ns += kPacket_ns) {
     const auto first =

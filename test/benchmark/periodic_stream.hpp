@@ -33,6 +33,8 @@ struct StreamSettings {
 class PeriodicStream {
  public:
   explicit PeriodicStream(const StreamSettings& settings);
+  /// \param events of one period, sorted, from time 0 on
+  PeriodicStream(SensorSize size, std::vector<Event> events);
 
   std::size_t packetCount() const { return packet_begin_.size() - 1; }
   WireEvents packet(std::size_t index) const;
@@ -49,6 +51,8 @@ class PeriodicStream {
   void next();
 
  private:
+  void pack(const std::vector<Event>& events);
+
   StreamSettings settings_;
   std::int64_t start_ns_;
   std::vector<std::uint8_t> wire_;

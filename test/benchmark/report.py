@@ -217,6 +217,13 @@ def also_measured(results, table):
             table.add('with the default filters, uniform, %.1f M events' % (events / 1e6), '',
                       '%.0f Mev/s, close %.2f ms' % (results.get(name, 'Mev_per_s'),
                                                      results.get(name, 'close_ms')))
+    for events in EVENTS:
+        name = 'reblur/close/%d' % events
+        if name in results.benchmarks:
+            times = [results.get(name, method + '_ms') for method in
+                     ('ours', 'ours_filtered', 'ours_reblur')]
+            table.add('close, moving texture, %.1f M events: plain EDI, default, filter_reblur' %
+                      (events / 1e6), '', '%.2f, %.2f and %.2f ms' % tuple(times))
     for way in ('pointer', 'serialised'):
         for events in (130000, 430000):
             rate = results.get('intra_process/%s/%d' % (way, events), 'items_per_second')

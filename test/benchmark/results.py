@@ -2,8 +2,8 @@
 import json
 import os
 
-PROGRAMS = ('wire_decoding', 'intra_process', 'append', 'close', 'stages', 'end_to_end', 'video',
-            'recording')
+PROGRAMS = ('wire_decoding', 'intra_process', 'append', 'close', 'stages', 'reblur', 'end_to_end',
+            'video', 'recording')
 
 
 class Results:
