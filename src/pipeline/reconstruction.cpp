@@ -40,7 +40,7 @@ void Reconstruction::render(const Frame& frame, WindowIntegral& integral, const 
     if (filter.enabled && filter.reblur && parameters.reference == ExposureInstant::kMid &&
         Reblur::supports(image.format, parameters.response)) {
       reblur_.apply({frame.window, latent_image_.blurryLevels().data(), latent_image_.meanCounts(),
-                     latent_image_.frameNoise()},
+                     latent_image_.frameNoise(), integral.counts().data()},
                     lists, model, parameters.response, image);
     }
   }

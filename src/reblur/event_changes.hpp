@@ -1,10 +1,17 @@
 /// \file
-/// What the events say about the change of each pixel's log intensity from mid-exposure to four
+/// What the events say about the change of each pixel's log intensity from mid-exposure to three
 /// other instants of the exposure.
+///
+/// Only the events of its second half are looked at. Those of the first are what is left of the
+/// counts of the whole exposure. Steps that have only begun at an instant (see level_model.hpp) are
+/// added, too, except where pixels have so many events that a part of a step matters little.
+///
+/// Complexity. O(events in half the exposure + pixels).
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "fast_edi/base/types.hpp"
@@ -15,15 +22,17 @@ namespace fast_edi {
 
 class EventChanges {
  public:
-  static constexpr std::size_t kInstants = 4;
+  static constexpr std::size_t kInstants = 3;
   /// tau of the instants, see ImageMotion.
-  static constexpr std::array<float, kInstants> kTau = {-1.0F, -0.5F, 0.5F, 1.0F};
+  static constexpr std::array<float, kInstants> kTau = {-1.0F, 0.5F, 1.0F};
+  /// Events per pixel, in the mean, from which on begun steps are left out.
+  static constexpr std::uint64_t kManyEvents = 16;
 
-  /// Sums up the steps of all events, and those that have only begun (see level_model.hpp).
   /// \param window of the exposure, in event time
+  /// \param counts OFF and ON events of each pixel in the window, interleaved
   /// \pre the lists keep intervals unless the level model is the staircase
   void measure(const PixelEventLists& lists, const ExposureInterval& window,
-               const LatentGains::Model& model);
+               const std::uint16_t* counts, const LatentGains::Model& model);
 
   /// log L(x, tau) - log L(x, 0) of all pixels, row-major.
   const std::vector<float>& at(std::size_t instant) const { return change_[instant]; }
@@ -31,8 +40,7 @@ class EventChanges {
   std::size_t memoryBytes() const;
 
  private:
-  std::vector<float> sum_;
-  std::vector<float> middle_;
+  std::vector<float> middle_;  ///< steps that have begun in the middle
   std::array<std::vector<float>, kInstants> change_;
 };
 

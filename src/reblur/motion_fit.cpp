@@ -18,10 +18,13 @@ constexpr std::size_t kUnknowns = 2 * kParts;
 constexpr std::size_t kMostPixels = 1200;
 constexpr std::size_t kFewestPixels = 60;
 constexpr float kLeastCount = 1.5F;  ///< of a chosen pixel
-constexpr int kMostSteps = 6;
+/// At most, of the finest level first.
+constexpr std::array<int, 3> kMostSteps = {3, 4, 10};
 constexpr double kConverged_px = 0.05;
 /// Of the robust weights, in contrast thresholds; the finest level first.
 constexpr std::array<float, 3> kSpread = {6.0F, 3.0F, 2.0F};
+/// Where thresholds are smaller than this, noise of the image decides.
+constexpr float kLeastContrast = 0.1F;
 /// What is expected before any event is looked at: velocities, curvatures and tilts [px]. It
 /// decides only what the events leave open.
 constexpr double kUsualVelocity_px = 30.0;
@@ -52,13 +55,13 @@ void halveRow(const float* __restrict upper, const float* __restrict lower, std:
 }
 
 /// Means over 2 x 2 pixels.
-void halve(const std::vector<float>& plane, SensorSize size, std::vector<float>& half) {
+void halve(const float* plane, SensorSize size, std::vector<float>& half) {
   const SensorSize half_size = halved(size);
   const auto width = static_cast<std::size_t>(size.width);
   const auto half_width = static_cast<std::size_t>(half_size.width);
   half.resize(half_size.pixelCount());
   for (std::size_t y = 0; y < static_cast<std::size_t>(half_size.height); ++y) {
-    const float* upper = plane.data() + 2 * y * width;
+    const float* upper = plane + 2 * y * width;
     halveRow(upper, upper + width, half_width, half.data() + y * half_width);
   }
 }
@@ -72,12 +75,52 @@ void binomial(const float* __restrict a, const float* __restrict b, const float*
   }
 }
 
+/// S is raised by this factor less one.
+float raiseOf(float mean_count) {
+  const float n = mean_count * (1.0F / kHalfRaised);
+  return kRaise / (1.0F + n * n);
+}
+
 FAST_EDI_VECTOR_CLONES
-void raise(const float* __restrict in, const float* __restrict count, std::size_t pixels,
-           float* __restrict out) {
+void raise(const float* __restrict count, std::size_t pixels, float* __restrict change) {
   for (std::size_t i = 0; i < pixels; ++i) {
     const float n = count[i] * (1.0F / kHalfRaised);
-    out[i] = in[i] * (1.0F + kRaise / (1.0F + n * n));
+    change[i] *= 1.0F + kRaise / (1.0F + n * n);
+  }
+}
+
+/// Weights from residuals, and slopes of the residuals by the parts of a motion.
+struct SamplePlanes {
+  const float* x;  ///< relative positions
+  const float* y;
+  float* gradient_x;
+  float* gradient_y;
+  float* zoom;
+  float* turn;
+  float* tilt_x;
+  float* tilt_y;
+  float* weight;  ///< in: 1, or 0 for what does not count
+  const float* residual;
+};
+FAST_EDI_VECTOR_CLONES
+void fillSlopes(const SamplePlanes& planes, std::size_t count, float precision) {
+  const float* __restrict x = planes.x;
+  const float* __restrict y = planes.y;
+  const float* __restrict gradient_x = planes.gradient_x;
+  const float* __restrict gradient_y = planes.gradient_y;
+  const float* __restrict residual = planes.residual;
+  float* __restrict zoom = planes.zoom;
+  float* __restrict turn = planes.turn;
+  float* __restrict tilt_x = planes.tilt_x;
+  float* __restrict tilt_y = planes.tilt_y;
+  float* __restrict weight = planes.weight;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float root = 1.0F / (1.0F + residual[i] * residual[i] * precision);
+    weight[i] *= root * root;
+    zoom[i] = gradient_x[i] * x[i] + gradient_y[i] * y[i];
+    turn[i] = gradient_y[i] * x[i] - gradient_x[i] * y[i];
+    tilt_x[i] = zoom[i] * x[i];
+    tilt_y[i] = zoom[i] * y[i];
   }
 }
 
@@ -160,126 +203,154 @@ void MotionFit::smooth(std::vector<float>& plane) {
 
 void MotionFit::load(const float* log_image, const EventChanges& changes,
                      const float* mean_counts) {
-  const std::size_t pixels = size_.pixelCount();
   Level& finest = levels_.front();
-  finest.log_image.assign(log_image, log_image + pixels);
-  finest.count.assign(mean_counts, mean_counts + pixels);
+  finest.log_image.assign(log_image, log_image + size_.pixelCount());
   smooth(finest.log_image);
-  for (std::size_t k = 0; k < EventChanges::kInstants; ++k) {
-    finest.change[k].resize(pixels);
-    raise(changes.at(k).data(), mean_counts, pixels, finest.change[k].data());
-    smooth(finest.change[k]);
-  }
   for (std::size_t i = 1; i < kLevels; ++i) {
     const Level& finer = levels_[i - 1];
     Level& level = levels_[i];
-    halve(finer.log_image, finer.size, level.log_image);
-    halve(finer.count, finer.size, level.count);
-    for (std::size_t k = 0; k < EventChanges::kInstants; ++k) {
-      halve(finer.change[k], finer.size, level.change[k]);
-    }
-  }
-}
-
-void MotionFit::fillTexels(Level& level) {
-  const auto width = static_cast<std::size_t>(level.size.width);
-  const auto height = static_cast<std::size_t>(level.size.height);
-  level.texels.resize(level.log_image.size());
-  for (std::size_t y = 1; y + 1 < height; ++y) {
-    const float* row = level.log_image.data() + y * width;
-    Texel* texels = level.texels.data() + y * width;
-    for (std::size_t x = 1; x + 1 < width; ++x) {
-      texels[x] = {row[x], kHalf * (row[x + 1] - row[x - 1]),
-                   kHalf * (row[x + width] - *(row + x - width)), 0.0F};
+    const bool from_given = i == 1;
+    halve(finer.log_image.data(), finer.size, level.log_image);
+    halve(from_given ? mean_counts : finer.count.data(), finer.size, level.count);
+    for (std::size_t k = 0; k < kInstants; ++k) {
+      halve((from_given ? changes.at(k) : finer.change[k]).data(), finer.size, level.change[k]);
+      if (from_given) {
+        raise(level.count.data(), level.count.size(), level.change[k].data());
+      }
     }
   }
 }
 
 /// Pixels with events, inside the border; of many, evenly spaced ones.
-void MotionFit::choosePixels(Level& level) {
+void MotionFit::choosePixels(const Level& level, const float* counts) {
   const auto width = static_cast<std::size_t>(level.size.width);
   const auto height = static_cast<std::size_t>(level.size.height);
-  std::vector<std::uint32_t>& chosen = level.chosen;
-  chosen.clear();
+  std::vector<std::uint32_t>& pixel = chosen_.pixel;
+  pixel.resize(level.size.pixelCount());
+  std::size_t count = 0;
   for (std::size_t y = 1; y + 1 < height; ++y) {
-    for (std::size_t x = 1; x + 1 < width; ++x) {
-      if (level.count[y * width + x] >= kLeastCount) {
-        chosen.push_back(static_cast<std::uint32_t>(y * width + x));
-      }
+    for (std::size_t i = y * width + 1; i < (y + 1) * width - 1; ++i) {
+      pixel[count] = static_cast<std::uint32_t>(i);
+      count += counts[i] >= kLeastCount ? 1 : 0;
     }
   }
-  const std::size_t count = chosen.size();
-  if (count > kMostPixels) {
-    for (std::size_t i = 0; i < kMostPixels; ++i) {
-      chosen[i] = chosen[i * count / kMostPixels];
+  const std::size_t kept = std::min(count, kMostPixels);
+  for (std::size_t i = 0; i < kept; ++i) {
+    pixel[i] = pixel[i * count / kept];
+  }
+  pixel.resize(kept);
+}
+
+/// Changes of the finest level are smoothed as its image is, but only where they are looked at.
+void MotionFit::loadChosen(const EventChanges& changes, const float* mean_counts,
+                           std::size_t level_index) {
+  const Level& level = levels_[level_index];
+  const auto width = static_cast<std::uint32_t>(level.size.width);
+  const std::size_t count = chosen_.size();
+  chosen_.x.resize(count);
+  chosen_.y.resize(count);
+  chosen_.value.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t pixel = chosen_.pixel[i];
+    const std::uint32_t row = pixel / width;
+    chosen_.x[i] = static_cast<float>(pixel % width);
+    chosen_.y[i] = static_cast<float>(row);
+    chosen_.value[i] = level.log_image[pixel];
+  }
+  for (std::size_t k = 0; k < kInstants; ++k) {
+    std::vector<float>& out = chosen_.change[k];
+    out.resize(count);
+    const float* change = level_index == 0 ? changes.at(k).data() : level.change[k].data();
+    for (std::size_t i = 0; i < count; ++i) {
+      const float* at = change + chosen_.pixel[i];
+      if (level_index > 0) {
+        out[i] = *at;
+        continue;
+      }
+      const auto across = [](const float* row) {
+        return kQuarter * ((row[-1] + row[1]) + 2.0F * row[0]);
+      };
+      const float smoothed =
+          kQuarter * ((across(at - width) + across(at + width)) + 2.0F * across(at));
+      out[i] = smoothed * (1.0F + raiseOf(mean_counts[chosen_.pixel[i]]));
     }
-    chosen.resize(kMostPixels);
+  }
+}
+
+/// Residuals and gradients where the chosen pixels have moved to; weight 0 for what left the image.
+void MotionFit::samplePixels(const Level& level, std::size_t instant, float scale,
+                             const ImageMotion& motion) {
+  const ImageMotion::Parts c = motion.at(EventChanges::kTau[instant]);
+  const auto width = static_cast<std::ptrdiff_t>(level.size.width);
+  const auto right = static_cast<float>(level.size.width - 3);
+  const auto bottom = static_cast<float>(level.size.height - 3);
+  const float per_px = 1.0F / scale;
+  const float half_per_px = kHalf * per_px;
+  const std::vector<float>& change = chosen_.change[instant];
+  float* gradient_x = samples_[kGradientX].data();
+  float* gradient_y = samples_[kGradientY].data();
+  float* weight = samples_[kWeight].data();
+  float* residual = samples_[kResidual].data();
+  for (std::size_t i = 0; i < chosen_.size(); ++i) {
+    const float at_x = (chosen_.x[i] + kHalf) * scale - kHalf;  // at full resolution
+    const float at_y = (chosen_.y[i] + kHalf) * scale - kHalf;
+    const Displacement u = motion.displace(c, at_x, at_y);
+    const float x = chosen_.x[i] + u.x * per_px;
+    const float y = chosen_.y[i] + u.y * per_px;
+    relative_x_[i] = motion.relativeX(at_x);
+    relative_y_[i] = motion.relativeY(at_y);
+    if (!(x >= 1.0F && y >= 1.0F && x < right && y < bottom)) {
+      gradient_x[i] = gradient_y[i] = weight[i] = residual[i] = 0.0F;
+      continue;
+    }
+    const auto left = static_cast<std::ptrdiff_t>(x);
+    const auto top = static_cast<std::ptrdiff_t>(y);
+    const float fx = x - static_cast<float>(left);
+    const float fy = y - static_cast<float>(top);
+    const float* above = level.log_image.data() + (top - 1) * width + left;
+    const float* upper = above + width;
+    const float* lower = upper + width;
+    const float* below = lower + width;
+    const auto between = [&](float a, float b, float d, float e) {
+      const float over = a + fx * (b - a);
+      return over + fy * (d + fx * (e - d) - over);
+    };
+    residual[i] = between(upper[0], upper[1], lower[0], lower[1]) - chosen_.value[i] - change[i];
+    gradient_x[i] = half_per_px * between(upper[1] - upper[-1], upper[2] - upper[0],
+                                          lower[1] - lower[-1], lower[2] - lower[0]);
+    gradient_y[i] = half_per_px * between(lower[0] - above[0], lower[1] - above[1],
+                                          below[0] - upper[0], below[1] - upper[1]);
+    weight[i] = 1.0F;
   }
 }
 
 MotionFit::Sums MotionFit::sumAt(const Level& level, std::size_t instant, float scale,
                                  const ImageMotion& motion, float spread) {
-  const ImageMotion::Parts c = motion.at(EventChanges::kTau[instant]);
-  const auto width = static_cast<std::uint32_t>(level.size.width);
-  const auto right = static_cast<float>(level.size.width - 2);
-  const auto bottom = static_cast<float>(level.size.height - 2);
-  const float precision = 1.0F / (spread * spread);
-  const float per_px = 1.0F / scale;
-  const std::vector<float>& change = level.change[instant];
+  const std::size_t blocks = (chosen_.size() + kFloatBlock - 1) / kFloatBlock;
+  const std::size_t count = blocks * kFloatBlock;
+  for (std::vector<float>& plane : samples_) {
+    plane.resize(count);
+    std::fill(plane.begin() + static_cast<std::ptrdiff_t>(chosen_.size()), plane.end(), 0.0F);
+  }
+  relative_x_.resize(count);
+  relative_y_.resize(count);
+  samplePixels(level, instant, scale, motion);
+  fillSlopes({relative_x_.data(), relative_y_.data(), samples_[kGradientX].data(),
+              samples_[kGradientY].data(), samples_[kZoom].data(), samples_[kTurn].data(),
+              samples_[kTiltX].data(), samples_[kTiltY].data(), samples_[kWeight].data(),
+              samples_[kResidual].data()},
+             count, 1.0F / (spread * spread));
   Sums sums;
-  for (std::vector<float>& plane : samples_) {
-    plane.clear();
+  for (std::size_t i = 0; i < chosen_.size(); ++i) {
+    const float residual = samples_[kResidual][i];
+    sums.weight += samples_[kWeight][i];
+    sums.residuals += samples_[kWeight][i] * residual * residual;
   }
-  for (const std::uint32_t pixel : level.chosen) {
-    const std::uint32_t pixel_row = pixel / width;
-    const auto column = static_cast<float>(pixel % width);
-    const auto row = static_cast<float>(pixel_row);
-    const float at_x = (column + kHalf) * scale - kHalf;  // at full resolution
-    const float at_y = (row + kHalf) * scale - kHalf;
-    const Displacement u = motion.displace(c, at_x, at_y);
-    const float x = column + u.x * per_px;
-    const float y = row + u.y * per_px;
-    if (!(x >= 1.0F && y >= 1.0F && x < right - 1.0F && y < bottom - 1.0F)) {
-      continue;
-    }
-    const auto left = static_cast<std::uint32_t>(x);
-    const auto top = static_cast<std::uint32_t>(y);
-    const float fx = x - static_cast<float>(left);
-    const float fy = y - static_cast<float>(top);
-    const Texel* upper = level.texels.data() + std::size_t{top} * width + left;
-    const Texel* lower = upper + width;
-    const auto between = [&](float Texel::*part) {
-      const float above = upper[0].*part + fx * (upper[1].*part - upper[0].*part);
-      const float below = lower[0].*part + fx * (lower[1].*part - lower[0].*part);
-      return above + fy * (below - above);
-    };
-    const float residual = between(&Texel::value) - level.log_image[pixel] - change[pixel];
-    const float root = 1.0F / (1.0F + residual * residual * precision);
-    const float weight = root * root;
-    const float gx = per_px * between(&Texel::x);
-    const float gy = per_px * between(&Texel::y);
-    const float from_x = motion.relativeX(at_x);
-    const float from_y = motion.relativeY(at_y);
-    const float zoom = gx * from_x + gy * from_y;
-    const float slope[kParts] = {gx,           gy, zoom, gy * from_x - gx * from_y, zoom * from_x,
-                                 zoom * from_y};
-    for (std::size_t i = 0; i < kParts; ++i) {
-      samples_[i].push_back(slope[i]);
-    }
-    samples_[kWeights].push_back(weight);
-    samples_[kResiduals].push_back(residual);
-    sums.weight += weight;
-    sums.residuals += weight * residual * residual;
-  }
-  const std::size_t blocks = (samples_[kWeights].size() + kFloatBlock - 1) / kFloatBlock;
   std::array<const float*, kParts> planes{};
-  for (std::vector<float>& plane : samples_) {
-    plane.resize(blocks * kFloatBlock, 0.0F);  // weights of 0
-  }
   for (std::size_t i = 0; i < kParts; ++i) {
     planes[i] = samples_[i].data();
-    addProducts(planes.data(), i, samples_[kWeights].data(), samples_[kResiduals].data(),
-                blocks * kFloatBlock, sums.squares[i], &sums.products[i]);
+    addProducts(planes.data(), i, samples_[kWeight].data(), samples_[kResidual].data(), count,
+                sums.squares[i], &sums.products[i]);
   }
   return sums;
 }
@@ -327,16 +398,17 @@ FittedMotion MotionFit::fit(const float* log_image, const EventChanges& changes,
   fitted.motion = ImageMotion(size_);
   Equations equations;
   for (std::size_t i = kLevels; i-- > 0;) {
-    Level& level = levels_[i];
-    choosePixels(level);
-    if (level.chosen.size() < kFewestPixels) {
+    const Level& level = levels_[i];
+    choosePixels(level, i == 0 ? mean_counts : level.count.data());
+    if (chosen_.size() < kFewestPixels) {
       continue;
     }
-    fillTexels(level);
+    loadChosen(changes, mean_counts, i);
     const auto scale = static_cast<float>(1u << i);
     double largest = kConverged_px;
-    for (int step = 0; step < kMostSteps && largest >= kConverged_px; ++step) {
-      equations = linearise(level, scale, fitted.motion, kSpread[i] * contrast);
+    for (int step = 0; step < kMostSteps[i] && largest >= kConverged_px; ++step) {
+      equations =
+          linearise(level, scale, fitted.motion, kSpread[i] * std::max(contrast, kLeastContrast));
       const Vector change = equations.matrix.ldlt().solve(equations.right);
       for (std::size_t part = 0; part < kParts; ++part) {
         const auto index = static_cast<Eigen::Index>(part);
@@ -347,7 +419,7 @@ FittedMotion MotionFit::fit(const float* log_image, const EventChanges& changes,
       largest = change.cwiseAbs().maxCoeff();
     }
   }
-  if (levels_.front().chosen.size() >= kFewestPixels) {
+  if (chosen_.size() >= kFewestPixels) {  // of the finest level
     measure(equations, fitted);
   }
   return fitted;
@@ -389,16 +461,21 @@ void MotionFit::measure(const Equations& equations, FittedMotion& fitted) const 
 }
 
 std::size_t MotionFit::memoryBytes() const {
-  std::size_t bytes = rows_.capacity() * sizeof(float);
+  std::size_t floats = rows_.capacity() + relative_x_.capacity() + relative_y_.capacity() +
+                       chosen_.x.capacity() + chosen_.y.capacity() + chosen_.value.capacity();
   for (const Level& level : levels_) {
-    bytes += (level.log_image.capacity() + level.count.capacity()) * sizeof(float) +
-             level.texels.capacity() * sizeof(Texel) +
-             level.chosen.capacity() * sizeof(std::uint32_t);
+    floats += level.log_image.capacity() + level.count.capacity();
     for (const std::vector<float>& change : level.change) {
-      bytes += change.capacity() * sizeof(float);
+      floats += change.capacity();
     }
   }
-  return bytes;
+  for (const std::vector<float>& change : chosen_.change) {
+    floats += change.capacity();
+  }
+  for (const std::vector<float>& plane : samples_) {
+    floats += plane.capacity();
+  }
+  return floats * sizeof(float) + chosen_.pixel.capacity() * sizeof(std::uint32_t);
 }
 
 }  // namespace fast_edi

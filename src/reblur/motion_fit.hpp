@@ -6,7 +6,7 @@
 ///
 ///     log L(x + u(x, tau)) - log L(x) = S(x, tau)
 ///
-/// Gauss-Newton over some 1,200 pixels with events at four instants, coarse to fine on images of a
+/// Gauss-Newton over some 1,200 pixels with events at three instants, coarse to fine on images of a
 /// quarter, half and full resolution. Residuals r count with weight 1 / (1 + (r / spread)^2)^2.
 /// Levels between two thresholds have moved further than their events say; S is raised by up to a
 /// quarter where a pixel has few events, as GainFilter does it with gains. Without this all motions
@@ -53,31 +53,45 @@ class MotionFit {
 
  private:
   static constexpr std::size_t kLevels = 3;
-  static constexpr std::size_t kWeights = ImageMotion::kParts;
-  static constexpr std::size_t kResiduals = kWeights + 1;
+  static constexpr std::size_t kInstants = EventChanges::kInstants;
 
-  /// Log intensity and its gradient beside each other, so that one load brings them.
-  struct Texel {
-    float value;
-    float x;
-    float y;
-    float unused;
-  };
   struct Level {
     SensorSize size;
     std::vector<float> log_image;
-    std::vector<float> count;
-    std::array<std::vector<float>, EventChanges::kInstants> change;
-    std::vector<Texel> texels;
-    std::vector<std::uint32_t> chosen;  ///< pixels
+    std::vector<float> count;                          ///< empty in the finest: as given
+    std::array<std::vector<float>, kInstants> change;  ///< the same
+  };
+  /// The chosen pixels of a level, one value each.
+  struct Chosen {
+    std::vector<std::uint32_t> pixel;
+    std::vector<float> x;
+    std::vector<float> y;
+    std::vector<float> value;  ///< of log_image
+    std::array<std::vector<float>, kInstants> change;
+
+    std::size_t size() const { return pixel.size(); }
+  };
+  /// Planes of samples in whole blocks; what is behind the last sample has no weight.
+  enum Plane : std::size_t {
+    kGradientX,
+    kGradientY,
+    kZoom,
+    kTurn,
+    kTiltX,
+    kTiltY,
+    kWeight,
+    kResidual,
+    kPlanes
   };
   struct Equations;
   struct Sums;
 
   void load(const float* log_image, const EventChanges& changes, const float* mean_counts);
   void smooth(std::vector<float>& plane);
-  static void fillTexels(Level& level);
-  static void choosePixels(Level& level);
+  void choosePixels(const Level& level, const float* counts);
+  void loadChosen(const EventChanges& changes, const float* mean_counts, std::size_t level);
+  void samplePixels(const Level& level, std::size_t instant, float scale,
+                    const ImageMotion& motion);
   Sums sumAt(const Level& level, std::size_t instant, float scale, const ImageMotion& motion,
              float spread);
   Equations linearise(const Level& level, float scale, const ImageMotion& motion, float spread);
@@ -86,8 +100,10 @@ class MotionFit {
   SensorSize size_;
   std::array<Level, kLevels> levels_;  ///< the finest first
   std::vector<float> rows_;            ///< scratch
-  /// Of the chosen pixels that stay on the image: slopes by the parts, weights, residuals.
-  std::array<std::vector<float>, kResiduals + 1> samples_;
+  Chosen chosen_;
+  std::vector<float> relative_x_;  ///< of the chosen pixels, in the units of ImageMotion
+  std::vector<float> relative_y_;
+  std::array<std::vector<float>, kPlanes> samples_;
 };
 
 }  // namespace fast_edi

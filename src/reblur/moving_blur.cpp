@@ -10,14 +10,25 @@ namespace {
 
 using Tap = SceneLayout::Tap;
 
+/// Taps of one row at one instant.
+FAST_EDI_VECTOR_CLONES
+void fillTaps(const ImageMotion& motion, const ImageMotion::Parts& c, const SceneLayout& layout,
+              std::size_t row, Tap* taps) {
+  const auto y = static_cast<float>(row);
+  for (std::size_t block = 0; block < layout.blocks(); ++block) {
+    taps[block] = layout.tap(block, row, motion.displace(c, SceneLayout::centreOf(block), y));
+  }
+}
+
 /// One row of the image: the mean over the instants of the scene at their displacements.
 FAST_EDI_VECTOR_CLONES
-void gatherRow(const float* scene, std::size_t scene_stride, const Tap* tap, std::size_t blocks,
+void gatherRow(const float* scene, std::size_t scene_stride, const Tap* taps, std::size_t blocks,
                std::size_t instants, float* out) {
   const float share = 1.0F / static_cast<float>(instants);
   for (std::size_t block = 0; block < blocks; ++block) {
     FloatBlock sum = {};
-    for (std::size_t k = 0; k < instants; ++k, ++tap) {
+    const Tap* tap = taps + block;
+    for (std::size_t k = 0; k < instants; ++k, tap += blocks) {
       const float* upper = scene + tap->offset;
       const float* lower = upper + scene_stride;
       FloatBlock a;
@@ -37,21 +48,48 @@ void gatherRow(const float* scene, std::size_t scene_stride, const Tap* tap, std
   }
 }
 
-/// Adds a row to one of the four corners of its taps. A pass for each corner, since a load that
-/// overlaps a store just before it has to wait for it.
-/// \param step from one block's tap to the next
+/// What a block adds to the eight pixels from its tap on, in the row of the tap and in that below.
+/// \param shifted \p in by one pixel within each block, 0 in front
 FAST_EDI_VECTOR_CLONES
-void scatterRow(const float* in, const Tap* tap, std::size_t step, std::size_t blocks, bool right,
-                bool lower, float* scene) {
-  for (std::size_t block = 0; block < blocks; ++block, tap += step) {
-    const float weight = (right ? tap->x : 1.0F - tap->x) * (lower ? tap->y : 1.0F - tap->y);
-    float* to = scene + tap->offset;
-    FloatBlock sum;
+void scatterBlocks(const float* __restrict in, const float* __restrict shifted, const Tap* taps,
+                   std::size_t blocks, std::size_t scene_stride, float* __restrict scene) {
+  for (std::size_t block = 0; block < blocks; ++block) {
+    float* upper = scene + taps[block].offset;
+    float* lower = upper + scene_stride;
     FloatBlock value;
-    std::memcpy(&sum, to, sizeof(sum));
+    FloatBlock before;
+    FloatBlock sum;
     std::memcpy(&value, in + block * kFloatBlock, sizeof(value));
-    sum += weight * value;
-    std::memcpy(to, &sum, sizeof(sum));
+    std::memcpy(&before, shifted + block * kFloatBlock, sizeof(before));
+    value += taps[block].x * (before - value);
+    before = taps[block].y * value;
+    value -= before;
+    std::memcpy(&sum, upper, sizeof(sum));
+    sum += value;
+    std::memcpy(upper, &sum, sizeof(sum));
+    std::memcpy(&sum, lower, sizeof(sum));
+    sum += before;
+    std::memcpy(lower, &sum, sizeof(sum));
+  }
+}
+
+/// What they add to the ninth. Apart, since a load that overlaps a smaller store just before it has
+/// to wait for it.
+void scatterLast(const float* in, const Tap* taps, std::size_t blocks, std::size_t scene_stride,
+                 float* scene) {
+  for (std::size_t block = 0; block < blocks; ++block) {
+    float* upper = scene + taps[block].offset + kFloatBlock;
+    const float value = taps[block].x * in[block * kFloatBlock + kFloatBlock - 1];
+    const float below = taps[block].y * value;
+    *upper += value - below;
+    upper[scene_stride] += below;
+  }
+}
+
+FAST_EDI_VECTOR_CLONES
+void multiply(const float* __restrict by, std::size_t count, float* __restrict values) {
+  for (std::size_t i = 0; i < count; ++i) {
+    values[i] *= by[i];
   }
 }
 
@@ -66,9 +104,9 @@ void subtractNeighbours(const float* __restrict in, std::size_t count, std::size
 }
 
 FAST_EDI_VECTOR_CLONES
-void scale(const float* __restrict in, std::size_t count, float by, float* __restrict out) {
+void scale(std::size_t count, float by, float* values) {
   for (std::size_t i = 0; i < count; ++i) {
-    out[i] = by * in[i];
+    values[i] *= by;
   }
 }
 
@@ -76,28 +114,34 @@ void scale(const float* __restrict in, std::size_t count, float by, float* __res
 
 void MovingBlur::set(const ImageMotion& motion, const SceneLayout& layout, std::size_t instants) {
   constexpr double kHalf = 0.5;
+  constexpr std::size_t kRowsApart = 4;  // of those that the lost part is measured in
   layout_ = layout;
   instants_ = instants;
-  taps_.resize(layout.rows() * layout.blocks() * instants);
+  taps_.resize(layout.rows() * instants * layout.blocks());
   double lost_x = 0.0;
   double lost_y = 0.0;
+  std::size_t looked_at = 0;
   for (std::size_t k = 0; k < instants; ++k) {
     const float tau = static_cast<float>(2 * k + 1) / static_cast<float>(instants) - 1.0F;
     const ImageMotion::Parts c = motion.at(tau);
-    Tap* tap = taps_.data() + k;
     for (std::size_t y = 0; y < layout.rows(); ++y) {
-      for (std::size_t block = 0; block < layout.blocks(); ++block, tap += instants) {
-        *tap = layout.tap(block, y,
-                          motion.displace(c, SceneLayout::centreOf(block), static_cast<float>(y)));
+      Tap* taps = taps_.data() + tapsBefore(y) + k * layout.blocks();
+      fillTaps(motion, c, layout, y, taps);
+      if (y % kRowsApart != 0) {
+        continue;
+      }
+      for (const Tap* tap = taps; tap < taps + layout.blocks(); ++tap, ++looked_at) {
         lost_x += static_cast<double>(tap->x * (1.0F - tap->x));
         lost_y += static_cast<double>(tap->y * (1.0F - tap->y));
       }
     }
   }
-  lost_x_ = static_cast<float>(kHalf * lost_x / static_cast<double>(taps_.size()));
-  lost_y_ = static_cast<float>(kHalf * lost_y / static_cast<double>(taps_.size()));
+  lost_x_ = static_cast<float>(kHalf * lost_x / static_cast<double>(looked_at));
+  lost_y_ = static_cast<float>(kHalf * lost_y / static_cast<double>(looked_at));
   sharpened_.resize(layout.sceneFloats());
-  scaled_.resize(layout.stride());
+  sum_.resize(layout.sceneFloats());
+  row_.resize(layout.stride());
+  shifted_.assign(layout.stride(), 0.0F);
 }
 
 /// S, which is symmetric but for the first and last row: no tap reaches them.
@@ -109,39 +153,57 @@ void MovingBlur::sharpen(const float* in, float* out) const {
   subtractNeighbours(in, count, stride, lost_x_, lost_y_, out);
 }
 
+void MovingBlur::gather(std::size_t row, float* out) const {
+  gatherRow(sharpened_.data(), layout_.sceneStride(), taps_.data() + tapsBefore(row),
+            layout_.blocks(), instants_, out);
+}
+
+/// Adds row_ to sum_.
+void MovingBlur::scatter(std::size_t row) {
+  scale(row_.size(), 1.0F / static_cast<float>(instants_), row_.data());
+  std::copy(row_.begin(), row_.end() - 1, shifted_.begin() + 1);
+  for (std::size_t i = 0; i < shifted_.size(); i += kFloatBlock) {
+    shifted_[i] = 0.0F;
+  }
+  const Tap* taps = taps_.data() + tapsBefore(row);
+  for (std::size_t k = 0; k < instants_; ++k, taps += layout_.blocks()) {
+    scatterBlocks(row_.data(), shifted_.data(), taps, layout_.blocks(), layout_.sceneStride(),
+                  sum_.data());
+    scatterLast(row_.data(), taps, layout_.blocks(), layout_.sceneStride(), sum_.data());
+  }
+}
+
 void MovingBlur::apply(const float* scene, float* image) {
   sharpen(scene, sharpened_.data());
-  const Tap* taps = taps_.data();
-  for (std::size_t y = 0; y < layout_.rows(); ++y, taps += layout_.blocks() * instants_) {
-    gatherRow(sharpened_.data(), layout_.sceneStride(), taps, layout_.blocks(), instants_,
-              image + y * layout_.stride());
+  for (std::size_t y = 0; y < layout_.rows(); ++y) {
+    gather(y, image + y * layout_.stride());
   }
 }
 
 void MovingBlur::applyTransposed(const float* image, float* scene) {
-  const float share = 1.0F / static_cast<float>(instants_);
-  const std::size_t below = layout_.sceneStride();
-  float* sum = sharpened_.data();
-  std::fill(sharpened_.begin(), sharpened_.end(), 0.0F);
-  const Tap* taps = taps_.data();
-  for (std::size_t y = 0; y < layout_.rows(); ++y, taps += layout_.blocks() * instants_) {
-    scale(image + y * layout_.stride(), layout_.stride(), share, scaled_.data());
-    for (std::size_t k = 0; k < instants_; ++k) {
-      const auto add = [&](bool right, bool lower, float* to) {
-        scatterRow(scaled_.data(), taps + k, instants_, layout_.blocks(), right, lower, to);
-      };
-      add(false, false, sum);
-      add(true, false, sum + 1);
-      add(false, true, sum + below);
-      add(true, true, sum + below + 1);
-    }
+  std::fill(sum_.begin(), sum_.end(), 0.0F);
+  for (std::size_t y = 0; y < layout_.rows(); ++y) {
+    std::copy_n(image + y * layout_.stride(), layout_.stride(), row_.data());
+    scatter(y);
   }
-  sharpen(sum, scene);
+  sharpen(sum_.data(), scene);
+}
+
+void MovingBlur::applyNormal(const float* scene, const float* weights, float* out) {
+  sharpen(scene, sharpened_.data());
+  std::fill(sum_.begin(), sum_.end(), 0.0F);
+  for (std::size_t y = 0; y < layout_.rows(); ++y) {
+    gather(y, row_.data());
+    multiply(weights + y * layout_.stride(), row_.size(), row_.data());
+    scatter(y);
+  }
+  sharpen(sum_.data(), out);
 }
 
 std::size_t MovingBlur::memoryBytes() const {
   return taps_.capacity() * sizeof(Tap) +
-         (sharpened_.capacity() + scaled_.capacity()) * sizeof(float);
+         (sharpened_.capacity() + sum_.capacity() + row_.capacity() + shifted_.capacity()) *
+             sizeof(float);
 }
 
 }  // namespace fast_edi

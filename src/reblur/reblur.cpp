@@ -15,9 +15,9 @@ constexpr float kShortestPath_px = 1.5F;
 constexpr float kLongestReach_px = 40.0F;
 constexpr float kLargestDeviation_px = 0.4F;
 /// Instants of the blur: one for so much of the path.
-constexpr float kInstantsApart_px = 1.5F;
-constexpr float kFewestInstants = 5.0F;
-constexpr float kMostInstants = 11.0F;
+constexpr float kInstantsApart_px = 2.5F;
+constexpr float kFewestInstants = 4.0F;
+constexpr float kMostInstants = 7.0F;
 constexpr float kMaxDn8 = 255.0F;
 /// Of the image's sides: the coarsest level has a quarter of it.
 constexpr int kSmallestSide_px = 32;
@@ -47,7 +47,7 @@ void Reblur::fitMotion(const Frame& frame, const PixelEventLists& lists,
   constexpr double kHalf = 0.5;
   log_.resize(level_dn_.size());
   logLevels(level_dn_.data(), level_dn_.size(), offset_dn, log_.data());
-  changes_.measure(lists, frame.window, model);
+  changes_.measure(lists, frame.window, frame.counts, model);
   const auto contrast = static_cast<float>(kHalf * (model.thresholds.on + model.thresholds.off));
   fitted_ = fit_->fit(log_.data(), changes_, frame.mean_counts, contrast);
 }

@@ -63,39 +63,8 @@ void multiply(const float* __restrict by, std::size_t count, float* __restrict v
   }
 }
 
-/// Adds what anchor and likeness of neighbours contribute to the product; not in the first and last
-/// row.
-struct Prior {
-  const float* anchor;
-  const float* across;
-  const float* down;
-};
-FAST_EDI_VECTOR_CLONES
-void addPrior(const Prior& prior, const float* __restrict in, std::size_t count, std::size_t stride,
-              float* __restrict out) {
-  const float* __restrict anchor = prior.anchor;
-  const float* __restrict across = prior.across;
-  const float* __restrict down = prior.down;
-  for (std::size_t i = stride; i < count - stride; ++i) {
-    const float value = in[i];
-    out[i] += anchor[i] * value +
-              (across[i] * (value - in[i + 1]) + across[i - 1] * (value - in[i - 1])) +
-              (down[i] * (value - in[i + stride]) + down[i - stride] * (value - in[i - stride]));
-  }
-}
-
-FAST_EDI_VECTOR_CLONES
-void addScaled(std::size_t count, float factor, const float* __restrict x, float* __restrict y) {
-  for (std::size_t i = 0; i < count; ++i) {
-    y[i] += factor * x[i];
-  }
-}
-
-FAST_EDI_VECTOR_CLONES
-void scaleAndAdd(std::size_t count, float factor, const float* __restrict x, float* __restrict y) {
-  for (std::size_t i = 0; i < count; ++i) {
-    y[i] = x[i] + factor * y[i];
-  }
+float total(const FloatBlock& sum) {
+  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
 /// Sum of products over a row of whole blocks.
@@ -109,15 +78,60 @@ float dotOfRow(const float* x, const float* y, std::size_t count) {
     std::memcpy(&b, y + i, sizeof(b));
     sum += a * b;
   }
-  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+  return total(sum);
 }
 
-double dot(const std::vector<float>& x, const std::vector<float>& y, std::size_t stride) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < x.size(); i += stride) {
-    sum += static_cast<double>(dotOfRow(x.data() + i, y.data() + i, stride));
+/// A step of a row: \p solution and \p gradient. \return sum of squares of the new gradient
+FAST_EDI_VECTOR_CLONES
+float stepRow(std::size_t count, float length, const float* direction, const float* product,
+              float* solution, float* gradient) {
+  FloatBlock sum = {};
+  for (std::size_t i = 0; i < count; i += kFloatBlock) {
+    FloatBlock way;
+    FloatBlock value;
+    std::memcpy(&way, direction + i, sizeof(way));
+    std::memcpy(&value, solution + i, sizeof(value));
+    value += length * way;
+    std::memcpy(solution + i, &value, sizeof(value));
+    std::memcpy(&way, product + i, sizeof(way));
+    std::memcpy(&value, gradient + i, sizeof(value));
+    value -= length * way;
+    std::memcpy(gradient + i, &value, sizeof(value));
+    sum += value * value;
   }
-  return sum;
+  return total(sum);
+}
+
+FAST_EDI_VECTOR_CLONES
+void scaleAndAdd(std::size_t count, float factor, const float* __restrict x, float* __restrict y) {
+  for (std::size_t i = 0; i < count; ++i) {
+    y[i] = x[i] + factor * y[i];
+  }
+}
+
+/// Precisions of the prior, at the first pixel of a row.
+struct Prior {
+  const float* anchor;
+  const float* across;
+  const float* down;
+};
+
+/// Adds what anchor and likeness of neighbours contribute to the product.
+FAST_EDI_VECTOR_CLONES
+void addPrior(const Prior& prior, const float* __restrict in, std::size_t count, std::size_t stride,
+              float* __restrict out) {
+  const float* __restrict anchor = prior.anchor;
+  const float* __restrict across = prior.across;
+  const float* __restrict down = prior.down;
+  const float* __restrict down_above = prior.down - stride;
+  const float* __restrict above = in - stride;
+  const float* __restrict below = in + stride;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float value = in[i];
+    out[i] += anchor[i] * value +
+              (across[i] * (value - in[i + 1]) + *(across + i - 1) * (value - *(in + i - 1))) +
+              (down[i] * (value - below[i]) + down_above[i] * (value - above[i]));
+  }
 }
 
 /// Copies a plane of the image into one of the scene; beyond the border its nearest pixel counts.
@@ -172,6 +186,22 @@ void ResidualSolver::measureResidual(const Input& input, MovingBlur& blur,
   }
 }
 
+/// Applies the normal equations to the direction. \return its product with the result
+double ResidualSolver::applyEquations(MovingBlur& blur) {
+  const std::size_t count = blur.layout().sceneFloats();
+  const std::size_t stride = blur.layout().sceneStride();
+  blur.applyNormal(direction_.data(), precision_.data(), product_.data());
+  double energy = 0.0;
+  for (std::size_t i = 0; i < count; i += stride) {
+    if (i > 0 && i + stride < count) {
+      addPrior({anchor_.data() + i, across_.data() + i, down_.data() + i}, direction_.data() + i,
+               stride, stride, product_.data() + i);
+    }
+    energy += static_cast<double>(dotOfRow(direction_.data() + i, product_.data() + i, stride));
+  }
+  return energy;
+}
+
 void ResidualSolver::iterate(MovingBlur& blur) {
   const std::size_t count = blur.layout().sceneFloats();
   const std::size_t stride = blur.layout().sceneStride();
@@ -179,22 +209,25 @@ void ResidualSolver::iterate(MovingBlur& blur) {
   multiply(precision_.data(), image_.size(), image_.data());
   blur.applyTransposed(image_.data(), gradient_.data());
   direction_ = gradient_;
-  double squares = dot(gradient_, gradient_, stride);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < count; i += stride) {
+    squares += static_cast<double>(dotOfRow(gradient_.data() + i, gradient_.data() + i, stride));
+  }
   for (int step = 0; step < kSteps; ++step) {
-    blur.apply(direction_.data(), image_.data());
-    multiply(precision_.data(), image_.size(), image_.data());
-    blur.applyTransposed(image_.data(), product_.data());
-    addPrior({anchor_.data(), across_.data(), down_.data()}, direction_.data(), count, stride,
-             product_.data());
-    const double energy = dot(direction_, product_, stride);
+    const double energy = applyEquations(blur);
     if (energy <= 0.0) {
       return;  // no residual
     }
     const auto length = static_cast<float>(squares / energy);
-    addScaled(count, length, direction_.data(), solution_.data());
-    addScaled(count, -length, product_.data(), gradient_.data());
-    const double next = dot(gradient_, gradient_, stride);
-    scaleAndAdd(count, static_cast<float>(next / squares), gradient_.data(), direction_.data());
+    double next = 0.0;
+    for (std::size_t i = 0; i < count; i += stride) {
+      next +=
+          static_cast<double>(stepRow(stride, length, direction_.data() + i, product_.data() + i,
+                                      solution_.data() + i, gradient_.data() + i));
+    }
+    if (step + 1 < kSteps) {
+      scaleAndAdd(count, static_cast<float>(next / squares), gradient_.data(), direction_.data());
+    }
     squares = next;
   }
 }

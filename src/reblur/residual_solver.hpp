@@ -51,6 +51,7 @@ class ResidualSolver {
   void load(const Input& input, const SceneLayout& layout);
   void measureResidual(const Input& input, MovingBlur& blur, const std::vector<float>& scene,
                        std::vector<float>& residual);
+  double applyEquations(MovingBlur& blur);
   void iterate(MovingBlur& blur);
 
   std::vector<float> given_;

@@ -36,6 +36,7 @@ class SceneLayout {
   /// \param reach_px largest displacement
   SceneLayout(SensorSize size, float reach_px)
       : size_(size),
+        reach_px_(reach_px),
         blocks_(inBlocks(static_cast<std::size_t>(size.width))),
         margin_(kFloatBlock * inBlocks(static_cast<std::size_t>(std::ceil(reach_px)) + kSpare)),
         limit_(static_cast<float>(margin_ - 1)) {}
@@ -46,6 +47,7 @@ class SceneLayout {
   std::size_t stride() const { return blocks_ * kFloatBlock; }
   std::size_t imageFloats() const { return stride() * rows(); }
 
+  float reach() const { return reach_px_; }
   std::size_t margin() const { return margin_; }
   std::size_t sceneStride() const { return stride() + 2 * margin_; }
   std::size_t sceneRows() const { return rows() + 2 * margin_; }
@@ -55,6 +57,11 @@ class SceneLayout {
     return (y + margin_) * sceneStride() + margin_ + x;
   }
 
+  /// Largest whole number that is not larger; std::floor() is a call on processors without SSE4.1.
+  static float floorOf(float value) {
+    const auto whole = static_cast<float>(static_cast<std::int32_t>(value));
+    return whole - (whole > value ? 1.0F : 0.0F);
+  }
   /// Position of the middle of a block along its row.
   static float centreOf(std::size_t block) {
     constexpr float kMiddle = 0.5F * static_cast<float>(kFloatBlock - 1);
@@ -64,8 +71,8 @@ class SceneLayout {
   Tap tap(std::size_t block, std::size_t y, const Displacement& u) const {
     const float x_px = std::clamp(u.x, -limit_, limit_);
     const float y_px = std::clamp(u.y, -limit_, limit_);
-    const float left = std::floor(x_px);
-    const float upper = std::floor(y_px);
+    const float left = floorOf(x_px);
+    const float upper = floorOf(y_px);
     const auto stride = static_cast<std::int32_t>(sceneStride());
     return {static_cast<std::int32_t>(inScene(block * kFloatBlock, y)) +
                 static_cast<std::int32_t>(upper) * stride + static_cast<std::int32_t>(left),
@@ -78,6 +85,7 @@ class SceneLayout {
   static std::size_t inBlocks(std::size_t count) { return (count + kFloatBlock - 1) / kFloatBlock; }
 
   SensorSize size_;
+  float reach_px_ = 0.0F;
   std::size_t blocks_ = 0;
   std::size_t margin_ = 0;
   float limit_ = 0.0F;

@@ -9,10 +9,11 @@
 namespace fast_edi {
 namespace {
 
-constexpr std::size_t kResidualRadius = 7;
-constexpr std::size_t kNearRadius = 2;
-/// Of the neighbourhood: cells of 8 x 8 pixels, and as many on each side.
-constexpr std::size_t kCell = 8;
+/// Of windows, in pixels of half the resolution.
+constexpr std::size_t kResidualRadius = 3;
+constexpr std::size_t kNearRadius = 1;
+/// Of the neighbourhood: cells of 4 x 4 such pixels, and as many on each side.
+constexpr std::size_t kCell = 4;
 constexpr std::size_t kCellRadius = 5;
 
 /// Trust falls, or grows, from one to the other.
@@ -29,8 +30,13 @@ constexpr float kLeastComparable = 0.02F;
 constexpr float kLeastTrust = 0.02F;
 constexpr float kLeastSquare = 1e-3F;  ///< [DN^2]
 
-constexpr float kPart = 0.3F;   ///< of the larger change
-constexpr float kSteep = 0.5F;  ///< of the differences around
+constexpr float kQuarter = 0.25F;
+/// Shares of the pixels of half the resolution that lie around one of full resolution.
+constexpr float kCloser = 0.75F;
+constexpr float kFarther = 0.25F;
+
+constexpr float kPart = 0.3F;    ///< of the larger change
+constexpr float kSteep = 0.25F;  ///< of the differences around
 
 using MaskBlock = std::int32_t __attribute__((vector_size(kFloatBlock * sizeof(std::int32_t))));
 
@@ -105,10 +111,46 @@ void fromMask(const std::int32_t* __restrict mask, std::size_t count, float* __r
   }
 }
 
+/// Means over 2 x 2 pixels.
 FAST_EDI_VECTOR_CLONES
-void squaresOf(const float* __restrict in, std::size_t count, float* __restrict out) {
-  for (std::size_t i = 0; i < count; ++i) {
-    out[i] = in[i] * in[i];
+void halveRow(const float* __restrict upper, const float* __restrict lower, std::size_t count,
+              float* __restrict out) {
+  for (std::size_t x = 0; x < count; ++x) {
+    out[x] = kQuarter * ((upper[2 * x] + upper[2 * x + 1]) + (lower[2 * x] + lower[2 * x + 1]));
+  }
+}
+
+/// Their squares.
+FAST_EDI_VECTOR_CLONES
+void halveSquares(const float* __restrict upper, const float* __restrict lower, std::size_t count,
+                  float* __restrict out) {
+  for (std::size_t x = 0; x < count; ++x) {
+    const float a = upper[2 * x];
+    const float b = upper[2 * x + 1];
+    const float c = lower[2 * x];
+    const float d = lower[2 * x + 1];
+    out[x] = kQuarter * ((a * a + b * b) + (c * c + d * d));
+  }
+}
+
+/// \p near is the closer one of two rows or columns of half the resolution.
+FAST_EDI_VECTOR_CLONES
+void mixRows(const float* __restrict near, const float* __restrict far, std::size_t count,
+             float* __restrict out) {
+  for (std::size_t x = 0; x < count; ++x) {
+    out[x] = kCloser * near[x] + kFarther * far[x];
+  }
+}
+
+/// Twice as many, interpolated, and 0 where that is too little.
+/// \param in with one value more on each side
+FAST_EDI_VECTOR_CLONES
+void doubleRow(const float* __restrict in, std::size_t count, float least, float* __restrict out) {
+  for (std::size_t x = 0; x < count; ++x) {
+    const float left = kCloser * in[x + 1] + kFarther * in[x];
+    const float right = kCloser * in[x + 1] + kFarther * in[x + 2];
+    out[2 * x] = left < least ? 0.0F : std::min(1.0F, left);
+    out[2 * x + 1] = right < least ? 0.0F : std::min(1.0F, right);
   }
 }
 
@@ -188,59 +230,81 @@ void distrust(const float* __restrict share, std::size_t count, Slope slope,
 
 }  // namespace
 
-void TrustMap::findContradictions(const Input& input, const SceneLayout& layout,
-                                  const std::vector<float>& scene) {
-  const auto width = static_cast<std::size_t>(layout.size().width);
-  log_scene_.resize(scene.size());
-  logLevels(scene.data(), scene.size(), input.offset_dn, log_scene_.data());
-  could_.assign(layout.imageFloats(), 0);
-  does_.assign(layout.imageFloats(), 0);
-  padded_change_.assign(layout.stride(), 0.0F);
-  std::vector<SceneLayout::Tap> taps(layout.blocks());
+/// Logarithms of the scene at half the resolution. Its margin may be wider than half of the
+/// scene's: there the nearest pixel counts.
+void TrustMap::halveScene(const Input& input, const SceneLayout& layout,
+                          const std::vector<float>& scene) {
+  const std::size_t stride = half_.sceneStride();
+  const std::size_t first = half_.margin() - layout.margin() / 2;
+  const std::size_t count = std::min(layout.sceneStride() / 2, stride - first);
+  log_scene_.resize(half_.sceneFloats());
+  for (std::size_t y = 0; y < half_.sceneRows(); ++y) {
+    const std::size_t inside = std::clamp(y, first, first + layout.sceneRows() / 2 - 1) - first;
+    const float* upper = scene.data() + 2 * inside * layout.sceneStride();
+    float* out = log_scene_.data() + y * stride;
+    halveRow(upper, upper + layout.sceneStride(), count, out + first);
+    std::fill(out, out + first, out[first]);
+    std::fill(out + first + count, out + stride, out[first + count - 1]);
+  }
+  logLevels(log_scene_.data(), log_scene_.size(), input.offset_dn, log_scene_.data());
+}
+
+void TrustMap::findContradictions(const Input& input) {
+  constexpr float kHalf = 0.5F;
+  const auto width = static_cast<std::size_t>(half_.size().width);
+  const auto full_width = static_cast<std::size_t>(size_.width);
+  could_.assign(half_.imageFloats(), 0);
+  does_.assign(half_.imageFloats(), 0);
+  row_.assign(half_.stride(), 0.0F);
+  taps_.resize(half_.blocks());
   for (std::size_t k = 0; k < EventChanges::kInstants; ++k) {
     const ImageMotion::Parts c = input.motion.at(EventChanges::kTau[k]);
     const float* change = input.changes.at(k).data();
-    for (std::size_t y = 0; y < layout.rows(); ++y) {
-      for (std::size_t block = 0; block < layout.blocks(); ++block) {
-        taps[block] = layout.tap(
-            block, y,
-            input.motion.displace(c, SceneLayout::centreOf(block), static_cast<float>(y)));
+    for (std::size_t y = 0; y < half_.rows(); ++y) {
+      for (std::size_t block = 0; block < half_.blocks(); ++block) {
+        const Displacement u = input.motion.displace(c, 2.0F * SceneLayout::centreOf(block) + kHalf,
+                                                     2.0F * static_cast<float>(y) + kHalf);
+        taps_[block] = half_.tap(block, y, {kHalf * u.x, kHalf * u.y});
       }
-      std::copy_n(change + y * width, width, padded_change_.data());
-      compareRow({log_scene_.data() + layout.inScene(0, y), log_scene_.data(), layout.sceneStride(),
-                  padded_change_.data(), could_.data() + y * layout.stride(),
-                  does_.data() + y * layout.stride()},
-                 taps.data(), layout.blocks(), input.contrast);
+      const float* upper = change + 2 * y * full_width;
+      halveRow(upper, upper + full_width, width, row_.data());
+      compareRow(
+          {log_scene_.data() + half_.inScene(0, y), log_scene_.data(), half_.sceneStride(),
+           row_.data(), could_.data() + y * half_.stride(), does_.data() + y * half_.stride()},
+          taps_.data(), half_.blocks(), input.contrast);
     }
   }
-  contradicts_.resize(layout.size().pixelCount());
-  comparable_.resize(layout.size().pixelCount());
-  for (std::size_t y = 0; y < layout.rows(); ++y) {
-    fromMask(does_.data() + y * layout.stride(), width, contradicts_.data() + y * width);
-    fromMask(could_.data() + y * layout.stride(), width, comparable_.data() + y * width);
+  contradicts_.resize(half_.size().pixelCount());
+  comparable_.resize(half_.size().pixelCount());
+  for (std::size_t y = 0; y < half_.rows(); ++y) {
+    fromMask(does_.data() + y * half_.stride(), width, contradicts_.data() + y * width);
+    fromMask(could_.data() + y * half_.stride(), width, comparable_.data() + y * width);
   }
 }
 
 void TrustMap::explain(const SceneLayout& layout, const ResidualSolver& solved, float noise_dn) {
-  const std::size_t pixels = layout.size().pixelCount();
-  const auto width = static_cast<std::size_t>(layout.size().width);
-  before_.resize(pixels);
-  after_.resize(pixels);
-  trust_.resize(pixels);
-  for (std::size_t y = 0; y < layout.rows(); ++y) {
-    squaresOf(solved.residualBefore().data() + y * layout.stride(), width,
-              before_.data() + y * width);
-    squaresOf(solved.residualAfter().data() + y * layout.stride(), width,
-              after_.data() + y * width);
+  const SensorSize size = half_.size();
+  const auto width = static_cast<std::size_t>(size.width);
+  before_.resize(size.pixelCount());
+  after_.resize(size.pixelCount());
+  trusted_.resize(size.pixelCount());
+  for (std::size_t y = 0; y < half_.rows(); ++y) {
+    const std::size_t upper = 2 * y * layout.stride();
+    const std::size_t lower = upper + layout.stride();
+    const float* residual = solved.residualBefore().data();
+    halveSquares(residual + upper, residual + lower, width, before_.data() + y * width);
+    residual = solved.residualAfter().data();
+    halveSquares(residual + upper, residual + lower, width, after_.data() + y * width);
   }
-  boxMeans(before_, layout.size(), kResidualRadius, rows_);
-  boxMeans(after_, layout.size(), kResidualRadius, rows_);
-  trustResiduals(before_.data(), after_.data(), pixels, std::max(kLeastSquare, noise_dn * noise_dn),
-                 trust_.data());
+  boxMeans(before_, size, kResidualRadius, rows_);
+  boxMeans(after_, size, kResidualRadius, rows_);
+  trustResiduals(before_.data(), after_.data(), before_.size(),
+                 std::max(kLeastSquare, noise_dn * noise_dn), trusted_.data());
 }
 
 /// Over cells, whose sums stand for those of their pixels.
-void TrustMap::judgeNeighbourhood(SensorSize size) {
+void TrustMap::judgeNeighbourhood() {
+  const SensorSize size = half_.size();
   const auto width = static_cast<std::size_t>(size.width);
   const auto height = static_cast<std::size_t>(size.height);
   const SensorSize cells{static_cast<int>((width + kCell - 1) / kCell),
@@ -264,32 +328,52 @@ void TrustMap::judgeNeighbourhood(SensorSize size) {
   }
   for (std::size_t y = 0; y < height; ++y) {
     for (std::size_t x = 0; x < width; ++x) {
-      trust_[y * width + x] *= does[y / kCell * columns + x / kCell];
+      trusted_[y * width + x] *= does[y / kCell * columns + x / kCell];
     }
+  }
+}
+
+/// To full resolution, linearly.
+void TrustMap::spread() {
+  const auto width = static_cast<std::size_t>(half_.size().width);
+  const auto full_width = static_cast<std::size_t>(size_.width);
+  const std::size_t last = half_.rows() - 1;
+  row_.resize(width + 2);
+  trust_.resize(size_.pixelCount());
+  for (std::size_t y = 0; y < static_cast<std::size_t>(size_.height); ++y) {
+    const std::size_t near = std::min(y / 2, last);
+    const std::size_t far = y % 2 == 0 ? near - (near > 0 ? 1 : 0) : std::min(near + 1, last);
+    mixRows(trusted_.data() + near * width, trusted_.data() + far * width, width, row_.data() + 1);
+    row_.front() = row_[1];
+    row_.back() = row_[width];
+    float* out = trust_.data() + y * full_width;
+    doubleRow(row_.data(), width, kLeastTrust, out);
+    std::fill(out + 2 * width, out + full_width, out[2 * width - 1]);
   }
 }
 
 void TrustMap::measure(const Input& input, const SceneLayout& layout,
                        const ResidualSolver& solved) {
-  const SensorSize size = layout.size();
+  constexpr float kHalf = 0.5F;
+  size_ = layout.size();
+  half_ = SceneLayout({size_.width / 2, size_.height / 2}, kHalf * layout.reach());
   explain(layout, solved, input.noise_dn);
-  findContradictions(input, layout, solved.solution());
-  judgeNeighbourhood(size);
-  boxMeans(contradicts_, size, kNearRadius, rows_);
-  distrust(contradicts_.data(), contradicts_.size(), kNear, trust_.data());
-  boxMeans(trust_, size, kNearRadius, rows_);
-  for (float& trust : trust_) {
-    trust = trust < kLeastTrust ? 0.0F : trust;
-  }
+  halveScene(input, layout, solved.solution());
+  findContradictions(input);
+  judgeNeighbourhood();
+  boxMeans(contradicts_, half_.size(), kNearRadius, rows_);
+  distrust(contradicts_.data(), contradicts_.size(), kNear, trusted_.data());
+  boxMeans(trusted_, half_.size(), kNearRadius, rows_);
+  spread();
 }
 
 std::size_t TrustMap::memoryBytes() const {
   std::size_t floats = could_.capacity() + does_.capacity();
-  for (const std::vector<float>* plane : {&log_scene_, &padded_change_, &contradicts_, &comparable_,
-                                          &before_, &after_, &rows_, &trust_}) {
+  for (const std::vector<float>* plane : {&log_scene_, &row_, &contradicts_, &comparable_, &before_,
+                                          &after_, &rows_, &trusted_, &trust_}) {
     floats += plane->capacity();
   }
-  return floats * sizeof(float);
+  return floats * sizeof(float) + taps_.capacity() * sizeof(SceneLayout::Tap);
 }
 
 }  // namespace fast_edi

@@ -1,10 +1,12 @@
 #include "reblur/event_changes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "fast_edi/events/event_counts.hpp"
 #include "support/event_generators.hpp"
 
 namespace fast_edi {
@@ -23,7 +25,9 @@ TEST(EventChangesTest, AreTheLogRatiosOfTheGains) {
   lists.append(testing::wireView(testing::toWire(list)));
   const LatentGains::Model model{{0.3, 0.25}, {4 * kMs, 0.85}};
   EventChanges changes;
-  changes.measure(lists, kWindow, model);
+  EventCounts counts(kSize);
+  counts.count(lists, kWindow);
+  changes.measure(lists, kWindow, counts.data(), model);
 
   LatentGains gains;
   const std::vector<float> ones(kSize.pixelCount(), 1.0F);
@@ -35,6 +39,35 @@ TEST(EventChangesTest, AreTheLogRatiosOfTheGains) {
     gains.at(lists, {t_ns, kWindow.end_ns}, gain.data());
     for (std::size_t i = 0; i < gain.size(); ++i) {
       ASSERT_NEAR(changes.at(k)[i], std::log(gain[i]), 1e-4F) << k << ", pixel " << i;
+    }
+  }
+}
+
+TEST(EventChangesTest, OfManyEventsBegunStepsAreLeftOut) {
+  const std::size_t count = 4 * EventChanges::kManyEvents * kSize.pixelCount();
+  const std::vector<Event> list =
+      testing::makeEvents(testing::EventScene::kUniform, {kSize, count, 0, 40 * kMs, 2});
+  PixelEventLists lists(kSize, {});
+  lists.keepIntervals(true);
+  lists.append(testing::wireView(testing::toWire(list)));
+  const LatentGains::Model model{{0.3, 0.25}, {4 * kMs, 0.85}};
+  EventCounts counts(kSize);
+  counts.count(lists, kWindow);
+  EventChanges changes;
+  changes.measure(lists, kWindow, counts.data(), model);
+  for (std::size_t k = 0; k < EventChanges::kInstants; ++k) {
+    const std::int64_t middle_ns = 20 * kMs;
+    const auto t_ns =
+        middle_ns + static_cast<std::int64_t>(EventChanges::kTau[k] * static_cast<float>(10 * kMs));
+    std::vector<double> expected(kSize.pixelCount());
+    for (const Event& event : list) {
+      const bool between =
+          event.t_ns >= std::min(t_ns, middle_ns) && event.t_ns < std::max(t_ns, middle_ns);
+      const double step = between ? model.thresholds.step(event.on) : 0.0;
+      expected[std::size_t{event.y} * kSize.width + event.x] += t_ns < middle_ns ? -step : step;
+    }
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      ASSERT_NEAR(static_cast<double>(changes.at(k)[i]), expected[i], 1e-4) << k << ", pixel " << i;
     }
   }
 }

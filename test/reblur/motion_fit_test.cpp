@@ -64,7 +64,7 @@ class MotionFitTest : public ::testing::Test {
       }
     }
     EventChanges changes;
-    changes.measure(lists, frame.exposure,
+    changes.measure(lists, frame.exposure, counts.data(),
                     {settings.sensor.thresholds, {4 * kNanosecondsPerMillisecond, 0.85}});
     fitted_ = MotionFit(kPlaneSize)
                   .fit(log_image.data(), changes, mean_counts.data(),

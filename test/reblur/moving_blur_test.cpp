@@ -70,6 +70,24 @@ TEST(MovingBlurTest, TheTransposedOperatorIsTheTransposedOne) {
   EXPECT_NEAR(dot(scene, spread), expected, 1e-5 * expected);
 }
 
+TEST(MovingBlurTest, TheNormalOperatorIsAWeightsAndATransposed) {
+  MovingBlur blur = blurOf(turning(), 5);
+  const SceneLayout& layout = blur.layout();
+  const std::vector<float> scene = noise(layout.sceneFloats(), 4);
+  std::vector<float> weights = noise(layout.imageFloats(), 5);
+  std::vector<float> image(layout.imageFloats());
+  blur.apply(scene.data(), image.data());
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    if (i % layout.stride() >= static_cast<std::size_t>(kSize.width)) weights[i] = 0.0F;
+    image[i] *= weights[i];
+  }
+  std::vector<float> expected(layout.sceneFloats());
+  blur.applyTransposed(image.data(), expected.data());
+  std::vector<float> product(layout.sceneFloats());
+  blur.applyNormal(scene.data(), weights.data(), product.data());
+  EXPECT_EQ(product, expected);
+}
+
 // cos(k x) moved by u and averaged over the path is known in closed form.
 TEST(MovingBlurTest, AWaveIsDampedAsOverItsPath) {
   constexpr double kWave = 0.7;  // rad/px
