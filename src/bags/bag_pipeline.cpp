@@ -1,16 +1,38 @@
 #include "fast_edi/bags/bag_pipeline.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
 #include <ros/serialization.h>
+#include <sensor_msgs/image_encodings.h>
 #include <std_msgs/Int32.h>
+#include <boost/make_shared.hpp>
 
 #include "fast_edi/bags/bag_deserialise.hpp"
 #include "fast_edi/messages/event_array.hpp"
 
 namespace fast_edi {
+namespace {
+
+/// \param trust of its pixels; empty: none is trusted
+sensor_msgs::ImagePtr makeTrustImage(const sensor_msgs::Image& like,
+                                     std::vector<std::uint8_t> trust) {
+  const auto image = boost::make_shared<sensor_msgs::Image>();
+  image->header = like.header;
+  image->width = like.width;
+  image->height = like.height;
+  image->step = like.width;
+  image->encoding = sensor_msgs::image_encodings::MONO8;
+  image->data = std::move(trust);
+  image->data.resize(std::size_t{like.width} * like.height);
+  return image;
+}
+
+}  // namespace
+
 BagPipeline::BagPipeline(const TopicNames& topics, const LoadedParameters& parameters)
     : topics_(topics),
       camera_info_topic_(topics.cameraInfo()),
@@ -19,13 +41,27 @@ BagPipeline::BagPipeline(const TopicNames& topics, const LoadedParameters& param
                    const OutputFrame& frame) {
               // Only kept here: the pipeline's calls must not throw, and writing to a full disk
               // does.
-              outputs_.push_back({image, info, frame, {}});
+              outputs_.push_back({image, info, frame, {}, nullptr});
+              if (shows_trust_) {
+                outputs_.back().trust = makeTrustImage(*image, std::exchange(trust_, {}));
+              }
             }),
       deblurrer_(parameters.deblur, sink_) {
   sink_.setLatent([] { return true; },
                   [this](const sensor_msgs::ImagePtr& image) {
                     outputs_.back().latent.push_back(image);  // its frame came in the same call
                   });
+}
+
+void BagPipeline::showTrust() {
+  constexpr float kMost = 255.0F;
+  shows_trust_ = true;
+  sink_.setTrust([this](const std::vector<float>& trust) {
+    trust_.clear();
+    for (const float share : trust) {
+      trust_.push_back(static_cast<std::uint8_t>(std::lround(kMost * share)));
+    }
+  });
 }
 
 bool BagPipeline::add(const BagMessage& message) {

@@ -42,6 +42,7 @@ void Reconstruction::render(const Frame& frame, WindowIntegral& integral, const 
       reblur_.apply({frame.window, latent_image_.blurryLevels().data(), latent_image_.meanCounts(),
                      latent_image_.frameNoise(), integral.counts().data()},
                     lists, model, parameters.response, image);
+      sink_.noteTrust(reblur_.trust());
     }
   }
   if (stabilises) {

@@ -61,6 +61,7 @@ struct Arguments {
   bool overwrite = false;
   std::string video;
   std::string frames;
+  std::string trust;
   std::string learned;
   std::string save_learned;
   int film_rate_hz = kDefaultFilmRate_hz;
@@ -76,6 +77,8 @@ po::options_description describeOptions(Arguments& arguments) {
       "recording to write; needed unless --video or --frames is given")(
       "frames", po::value(&arguments.frames)->value_name("FOLDER"),
       "folder for the deblurred frames as PNG, and frames.csv with their stamps and exposures")(
+      "trust", po::value(&arguments.trust)->value_name("FOLDER"),
+      "the same for how far filter_reblur trusted each pixel: black not at all, white fully")(
       "video", po::value(&arguments.video)->value_name("FILM"),
       "film to write, in slow motion: .mp4, .mov (MPEG-4) or .avi (Motion JPEG)")(
       "fps",
@@ -132,7 +135,8 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   if (kind != "same" && !fast_edi::isKnownCompression(kind)) {
     throw po::error("--compression " + kind + ": expected same, none, bz2 or lz4");
   }
-  if (arguments.output.empty() && arguments.video.empty() && arguments.frames.empty()) {
+  if (arguments.output.empty() && arguments.video.empty() && arguments.frames.empty() &&
+      arguments.trust.empty()) {
     throw po::error("neither --out nor --video nor --frames is given: nothing to write");
   }
   if (arguments.film_rate_hz < 1 || arguments.film_rate_hz > fast_edi::kMaxLatentRate_hz) {
@@ -192,9 +196,10 @@ void printFilm(const fast_edi::FilmReport& film, const std::string& path) {
 }
 
 /// A deblurred frame, or one that was passed through; its exposure where that is known.
-void addTo(fast_edi::FrameFolder& folder, const fast_edi::BagPipeline::Output& output) {
-  const fast_edi::ExposureInterval& exposure = output.frame.exposure;
-  folder.add(*output.image, exposure.length() > 0 ? std::optional(exposure) : std::nullopt);
+void addTo(fast_edi::FrameFolder& folder, const sensor_msgs::Image& image,
+           const fast_edi::OutputFrame& frame) {
+  const fast_edi::ExposureInterval& exposure = frame.exposure;
+  folder.add(image, exposure.length() > 0 ? std::optional(exposure) : std::nullopt);
 }
 
 /// Those of --learned first, which the command line's then replace.
@@ -231,6 +236,13 @@ int run(const Arguments& arguments) {
   if (!arguments.frames.empty()) {
     folder.emplace(arguments.frames, arguments.overwrite);
   }
+  std::optional<fast_edi::FrameFolder> trust;
+  if (!arguments.trust.empty()) {
+    if (!parameters.deblur.filter.reblur) {
+      throw po::error("--trust needs filter_reblur:=true");
+    }
+    trust.emplace(arguments.trust, arguments.overwrite);
+  }
   std::optional<fast_edi::LearnedFile> learned;
   if (!arguments.save_learned.empty()) {
     tools::requireFree(arguments.save_learned, arguments.overwrite);
@@ -246,9 +258,15 @@ int run(const Arguments& arguments) {
     fast_edi::BagDeblurrer deblurrer(
         reader, writer ? &*writer : nullptr, arguments.topics, parameters,
         [&bar](std::uint64_t done, std::uint64_t total) { bar.update(done, total); });
-    deblurrer.setOutputHandler([&film, &folder](const fast_edi::BagPipeline::Output& output) {
+    if (trust) {
+      deblurrer.showTrust();
+    }
+    deblurrer.setOutputHandler([&](const fast_edi::BagPipeline::Output& output) {
       if (folder) {
-        addTo(*folder, output);
+        addTo(*folder, *output.image, output.frame);
+      }
+      if (trust) {
+        addTo(*trust, *output.trust, output.frame);
       }
       if (film) {
         film->addFrame(*output.image);
@@ -272,6 +290,9 @@ int run(const Arguments& arguments) {
   if (folder) {
     folder->close();
   }
+  if (trust) {
+    trust->close();
+  }
   printSummary(std::cout, report);
   if (writer) {
     std::cout << "written: " << arguments.output << "\n";
@@ -284,6 +305,9 @@ int run(const Arguments& arguments) {
   }
   if (folder) {
     std::cout << "written: " << folder->frames() << " frames to " << arguments.frames << "\n";
+  }
+  if (trust) {
+    std::cout << "written: " << trust->frames() << " maps of trust to " << arguments.trust << "\n";
   }
   std::cout << std::flush;
   if (!report.interrupted) {

@@ -67,6 +67,17 @@ TEST_F(ReconstructionTest, VideoIsWrittenWhereItIsSetAndWanted) {
   EXPECT_EQ(sink.latent_images.size(), 4u);
 }
 
+TEST_F(ReconstructionTest, ShowsWhatReblurringTrusts) {
+  parameters.filter.enabled = true;
+  render();
+  EXPECT_TRUE(sink.trust_maps.empty());
+  parameters.filter.reblur = true;
+  render();
+  ASSERT_EQ(sink.trust_maps.size(), 1u);
+  EXPECT_EQ(sink.trust_maps.front().size(), kSize.pixelCount());
+  EXPECT_TRUE(sink.isBalanced());
+}
+
 TEST_F(ReconstructionTest, StabilisesOnlyAwayFromMidExposure) {
   parameters.filter.enabled = true;
   for (const ExposureInstant reference : {ExposureInstant::kMid, ExposureInstant::kEnd}) {

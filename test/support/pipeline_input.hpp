@@ -45,6 +45,11 @@ class RecordingSink : public FrameSink {
     outputs.push_back({output, memory_});
   }
 
+  void noteTrust(const std::vector<float>& trust) override {
+    balanced_ = balanced_ && open_;
+    trust_maps.push_back(trust);
+  }
+
   bool wantsLatentImages() const override { return wants_latent_images; }
   MutableImageView beginLatent(const InputFrame& input) override {
     open();
@@ -57,6 +62,7 @@ class RecordingSink : public FrameSink {
 
   bool isBalanced() const { return balanced_ && !open_; }
 
+  std::vector<std::vector<float>> trust_maps;
   std::vector<RecordedFrame> outputs;
   bool wants_latent_images = false;
   std::vector<RecordedLatent> latent_images;

@@ -224,5 +224,24 @@ TEST_F(InputForms, FramesComeAsPictures) {
   EXPECT_THAT(again.output, HasSubstr("the folder is not empty (--force writes into it)"));
 }
 
+TEST_F(InputForms, MapsOfTrustComeAsPictures) {
+  const std::string command = kTools + "deblur_bag --in " + bag_ + kThresholds + " --trust ";
+  const CommandResult refused = runCommand(command + file("none"));
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output, HasSubstr("--trust needs filter_reblur:=true"));
+  const CommandResult result = runCommand(command + file("trust") + " filter_reblur:=true");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("maps of trust to"));
+  for (int i = 0; i < kFrames; ++i) {
+    const sensor_msgs::Image& frame = expected_[static_cast<std::size_t>(i)];
+    const cv::Mat pixels =
+        cv::imread(file("trust/00000" + std::to_string(i) + ".png"), cv::IMREAD_UNCHANGED);
+    ASSERT_EQ(pixels.type(), CV_8UC1);
+    EXPECT_EQ(pixels.cols, static_cast<int>(frame.width));
+    EXPECT_EQ(pixels.rows, static_cast<int>(frame.height));
+    EXPECT_EQ(cv::countNonZero(pixels), 0) << "events at random, which no motion explains";
+  }
+}
+
 }  // namespace
 }  // namespace fast_edi

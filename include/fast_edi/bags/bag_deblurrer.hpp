@@ -60,6 +60,9 @@ class BagDeblurrer {
   /// Shows every output to \p handler as well, which may throw: run() then ends with that.
   void setOutputHandler(OutputHandler handler) { output_handler_ = std::move(handler); }
 
+  /// Outputs shown to the handler have maps of trust.
+  void showTrust() { pipeline_.showTrust(); }
+
   /// Asks \p requested before each message; once it says yes, run() behaves as at the end of the
   /// bag.
   void setStopRequest(StopRequest requested) { stop_requested_ = std::move(requested); }

@@ -25,11 +25,15 @@ class BagPipeline {
     sensor_msgs::CameraInfoPtr info;
     OutputFrame frame;  ///< its input comes from messageFrame(), which has the record time too
     std::vector<sensor_msgs::ImagePtr> latent;  ///< images of the high-rate video behind it
+    /// How far filter_reblur trusted each pixel, 0 to 255; null unless showTrust() was called.
+    sensor_msgs::ImagePtr trust;
   };
 
   /// \throws std::invalid_argument for parameters out of range
   BagPipeline(const TopicNames& topics, const LoadedParameters& parameters);
 
+  /// From now on, outputs have maps of trust.
+  void showTrust();
   /// Takes the next message of the recording, in the order of record times; other topics than ours
   /// only let time pass.
   /// \return false for a message on a topic of ours that contradicts itself: it is not used
@@ -53,7 +57,9 @@ class BagPipeline {
   MessageFrameSink sink_;
   Deblurrer deblurrer_;
   std::vector<Output> outputs_;
-  std::int64_t now_ns_ = 0;  ///< the bag's record time
+  bool shows_trust_ = false;
+  std::vector<std::uint8_t> trust_;  ///< of the image that is being written
+  std::int64_t now_ns_ = 0;          ///< the bag's record time
 };
 
 }  // namespace fast_edi

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "fast_edi/base/deblur_counters.hpp"
 #include "fast_edi/base/image.hpp"
@@ -41,6 +42,10 @@ class FrameSink {
   virtual MutableImageView begin(const InputFrame& input) = 0;
   /// The memory handed out by the last begin() now holds the image that \p output describes.
   virtual void finish(const OutputFrame& output) = 0;
+
+  /// How far filter_reblur trusted each pixel of the image that is being written, 0 to 1,
+  /// row-major. Comes between begin() and finish(), of frames that it looked at.
+  virtual void noteTrust(const std::vector<float>& trust) { static_cast<void>(trust); }
 
   /// Whether anybody wants the high-rate video just now. Asked once for each deblurred frame; costs
   /// nothing while it says no.

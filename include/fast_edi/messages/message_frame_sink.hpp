@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
@@ -41,6 +43,8 @@ class MessageFrameSink : public FrameSink {
   /// \param image is complete and nobody else's
   using DeliverLatent = std::function<void(const sensor_msgs::ImagePtr& image)>;
 
+  using DeliverTrust = std::function<void(const std::vector<float>& trust)>;
+
   /// \param frame_id used for images that have none
   MessageFrameSink(std::string frame_id, Deliver deliver);
 
@@ -48,11 +52,19 @@ class MessageFrameSink : public FrameSink {
   /// \param wanted called for each frame
   void setLatent(std::function<bool()> wanted, DeliverLatent deliver);
 
+  /// Who wants to know how far filter_reblur trusted the pixels of the image that comes next.
+  void setTrust(DeliverTrust deliver) { deliver_trust_ = std::move(deliver); }
+
   /// The calibration for all later frames.
   void setCameraInfo(const sensor_msgs::CameraInfoConstPtr& info) { camera_info_ = info; }
 
   MutableImageView begin(const InputFrame& input) override;
   void finish(const OutputFrame& output) override;
+  void noteTrust(const std::vector<float>& trust) override {
+    if (deliver_trust_) {
+      deliver_trust_(trust);
+    }
+  }
   bool wantsLatentImages() const override { return latent_wanted_ && latent_wanted_(); }
   MutableImageView beginLatent(const InputFrame& input) override { return begin(input); }
   void finishLatent(const InputFrame& input, std::int64_t stamp_ns) override;
@@ -65,6 +77,7 @@ class MessageFrameSink : public FrameSink {
   sensor_msgs::CameraInfoConstPtr camera_info_;
   std::function<bool()> latent_wanted_;
   DeliverLatent deliver_latent_;
+  DeliverTrust deliver_trust_;
   sensor_msgs::ImagePtr image_;  ///< between begin() and finish()
 };
 
