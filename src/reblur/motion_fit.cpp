@@ -75,6 +75,44 @@ void binomial(const float* __restrict a, const float* __restrict b, const float*
   }
 }
 
+/// \param rows scratch
+void smooth(std::vector<float>& plane, SensorSize size, std::vector<float>& rows) {
+  const auto width = static_cast<std::size_t>(size.width);
+  const auto height = static_cast<std::size_t>(size.height);
+  rows.resize(plane.size());
+  for (std::size_t y = 0; y < height; ++y) {
+    const float* above = plane.data() + (y > 0 ? y - 1 : 0) * width;
+    const float* below = plane.data() + std::min(y + 1, height - 1) * width;
+    binomial(above, plane.data() + y * width, below, width, rows.data() + y * width);
+  }
+  for (std::size_t y = 0; y < height; ++y) {
+    const float* row = rows.data() + y * width;
+    float* out = plane.data() + y * width;
+    binomial(row, row + 1, row + 2, width - 2, out + 1);
+    out[0] = kQuarter * (3.0F * row[0] + row[1]);
+    out[width - 1] = kQuarter * (3.0F * row[width - 1] + row[width - 2]);
+  }
+}
+
+/// Pixels with events, inside the border; of many, evenly spaced ones.
+void choosePixels(SensorSize size, const float* counts, std::vector<std::uint32_t>& pixel) {
+  const auto width = static_cast<std::size_t>(size.width);
+  const auto height = static_cast<std::size_t>(size.height);
+  pixel.resize(size.pixelCount());
+  std::size_t count = 0;
+  for (std::size_t y = 1; y + 1 < height; ++y) {
+    for (std::size_t i = y * width + 1; i < (y + 1) * width - 1; ++i) {
+      pixel[count] = static_cast<std::uint32_t>(i);
+      count += counts[i] >= kLeastCount ? 1 : 0;
+    }
+  }
+  const std::size_t kept = std::min(count, kMostPixels);
+  for (std::size_t i = 0; i < kept; ++i) {
+    pixel[i] = pixel[i * count / kept];
+  }
+  pixel.resize(kept);
+}
+
 /// S is raised by this factor less one.
 float raiseOf(float mean_count) {
   const float n = mean_count * (1.0F / kHalfRaised);
@@ -153,6 +191,14 @@ void addProducts(const float* const* planes, std::size_t last, const float* weig
   }
 }
 
+std::size_t capacityOf(const std::vector<float>* planes, std::size_t count) {
+  std::size_t floats = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    floats += planes[i].capacity();
+  }
+  return floats;
+}
+
 }  // namespace
 
 /// Of the residuals at one instant: J^T W J and J^T W r of B(x) c.
@@ -183,29 +229,11 @@ MotionFit::MotionFit(SensorSize size) : size_(size) {
   }
 }
 
-void MotionFit::smooth(std::vector<float>& plane) {
-  const auto width = static_cast<std::size_t>(size_.width);
-  const auto height = static_cast<std::size_t>(size_.height);
-  rows_.resize(plane.size());
-  for (std::size_t y = 0; y < height; ++y) {
-    const float* above = plane.data() + (y > 0 ? y - 1 : 0) * width;
-    const float* below = plane.data() + std::min(y + 1, height - 1) * width;
-    binomial(above, plane.data() + y * width, below, width, rows_.data() + y * width);
-  }
-  for (std::size_t y = 0; y < height; ++y) {
-    const float* row = rows_.data() + y * width;
-    float* out = plane.data() + y * width;
-    binomial(row, row + 1, row + 2, width - 2, out + 1);
-    out[0] = kQuarter * (3.0F * row[0] + row[1]);
-    out[width - 1] = kQuarter * (3.0F * row[width - 1] + row[width - 2]);
-  }
-}
-
 void MotionFit::load(const float* log_image, const EventChanges& changes,
                      const float* mean_counts) {
   Level& finest = levels_.front();
   finest.log_image.assign(log_image, log_image + size_.pixelCount());
-  smooth(finest.log_image);
+  smooth(finest.log_image, size_, rows_);
   for (std::size_t i = 1; i < kLevels; ++i) {
     const Level& finer = levels_[i - 1];
     Level& level = levels_[i];
@@ -219,26 +247,6 @@ void MotionFit::load(const float* log_image, const EventChanges& changes,
       }
     }
   }
-}
-
-/// Pixels with events, inside the border; of many, evenly spaced ones.
-void MotionFit::choosePixels(const Level& level, const float* counts) {
-  const auto width = static_cast<std::size_t>(level.size.width);
-  const auto height = static_cast<std::size_t>(level.size.height);
-  std::vector<std::uint32_t>& pixel = chosen_.pixel;
-  pixel.resize(level.size.pixelCount());
-  std::size_t count = 0;
-  for (std::size_t y = 1; y + 1 < height; ++y) {
-    for (std::size_t i = y * width + 1; i < (y + 1) * width - 1; ++i) {
-      pixel[count] = static_cast<std::uint32_t>(i);
-      count += counts[i] >= kLeastCount ? 1 : 0;
-    }
-  }
-  const std::size_t kept = std::min(count, kMostPixels);
-  for (std::size_t i = 0; i < kept; ++i) {
-    pixel[i] = pixel[i * count / kept];
-  }
-  pixel.resize(kept);
 }
 
 /// Changes of the finest level are smoothed as its image is, but only where they are looked at.
@@ -399,7 +407,7 @@ FittedMotion MotionFit::fit(const float* log_image, const EventChanges& changes,
   Equations equations;
   for (std::size_t i = kLevels; i-- > 0;) {
     const Level& level = levels_[i];
-    choosePixels(level, i == 0 ? mean_counts : level.count.data());
+    choosePixels(level.size, i == 0 ? mean_counts : level.count.data(), chosen_.pixel);
     if (chosen_.size() < kFewestPixels) {
       continue;
     }
@@ -462,18 +470,12 @@ void MotionFit::measure(const Equations& equations, FittedMotion& fitted) const 
 
 std::size_t MotionFit::memoryBytes() const {
   std::size_t floats = rows_.capacity() + relative_x_.capacity() + relative_y_.capacity() +
-                       chosen_.x.capacity() + chosen_.y.capacity() + chosen_.value.capacity();
+                       chosen_.x.capacity() + chosen_.y.capacity() + chosen_.value.capacity() +
+                       capacityOf(chosen_.change.data(), kInstants) +
+                       capacityOf(samples_.data(), kPlanes);
   for (const Level& level : levels_) {
-    floats += level.log_image.capacity() + level.count.capacity();
-    for (const std::vector<float>& change : level.change) {
-      floats += change.capacity();
-    }
-  }
-  for (const std::vector<float>& change : chosen_.change) {
-    floats += change.capacity();
-  }
-  for (const std::vector<float>& plane : samples_) {
-    floats += plane.capacity();
+    floats += level.log_image.capacity() + level.count.capacity() +
+              capacityOf(level.change.data(), kInstants);
   }
   return floats * sizeof(float) + chosen_.pixel.capacity() * sizeof(std::uint32_t);
 }

@@ -87,8 +87,6 @@ class MotionFit {
   struct Sums;
 
   void load(const float* log_image, const EventChanges& changes, const float* mean_counts);
-  void smooth(std::vector<float>& plane);
-  void choosePixels(const Level& level, const float* counts);
   void loadChosen(const EventChanges& changes, const float* mean_counts, std::size_t level);
   void samplePixels(const Level& level, std::size_t instant, float scale,
                     const ImageMotion& motion);
