@@ -150,6 +150,10 @@ ConfigKey integerKey(const ParameterRange& parameter, const std::string& default
                     std::move(store));
 }
 
+std::string boolText(bool value) {
+  return value ? "true" : "false";
+}
+
 ConfigKey boolKey(const KeyText& text, std::function<void(bool, ParameterDraft&)> store) {
   ConfigKey key;
   key.description = {text.name, "bool", text.unit, "true, false", text.default_value, text.doc};

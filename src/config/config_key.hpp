@@ -43,6 +43,9 @@ struct KeyText {
 /// "'0.3'", "a list", ...: what a message says was found.
 std::string foundText(const YAML::Node& node);
 
+/// "true" or "false".
+std::string boolText(bool value);
+
 ConfigKey numberKey(const KeyText& text, NumberRange range,
                     std::function<void(double, ParameterDraft&)> store);
 /// Name, unit and range are those of \p parameter.

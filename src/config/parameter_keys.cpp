@@ -14,10 +14,6 @@ namespace {
 using TimeMember = std::int64_t DeblurParameters::*;
 using InstantMember = ExposureInstant DeblurParameters::*;
 
-std::string boolText(bool value) {
-  return value ? "true" : "false";
-}
-
 template <typename Choice>
 using Choices = std::vector<std::pair<std::string, Choice>>;
 

@@ -16,10 +16,6 @@ constexpr NumberRange kDecimate{1.0, 16.0};
 constexpr NumberRange kThreads{1.0, 64.0};
 constexpr NumberRange kCorrectedBits{0.0, 2.0};
 
-std::string boolText(bool value) {
-  return value ? "true" : "false";
-}
-
 /// \param read where values go; must outlive the keys
 std::vector<ConfigKey> keysOf(TagDetectorParameters& read) {
   const TagDetectorParameters defaults;

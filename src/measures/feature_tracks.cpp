@@ -13,11 +13,11 @@ namespace fast_edi {
 namespace {
 
 constexpr double kQuality = 0.01;
-constexpr int kWindowPx = 21;
+constexpr int kFlowWindowPx = 21;
 constexpr int kPyramidLevels = 3;
 constexpr double kReturnPx = 0.5;    ///< between a feature and where tracking back ends
 constexpr double kEpipolarPx = 1.0;  ///< from the epipolar line
-constexpr double kConfidence = 0.99;
+constexpr double kTrackConfidence = 0.99;
 constexpr std::size_t kMinForModel = 8;  ///< of a fundamental matrix
 constexpr double kHomographyPx = 2.0;
 constexpr int kBorderPx = 1;
@@ -42,7 +42,7 @@ std::vector<bool> onEpipolarLines(const std::vector<cv::Point2f>& from,
   if (from.size() < kMinForModel) return kept;
   cv::Mat inliers;
   const cv::Mat model =
-      cv::findFundamentalMat(from, to, cv::FM_RANSAC, kEpipolarPx, kConfidence, inliers);
+      cv::findFundamentalMat(from, to, cv::FM_RANSAC, kEpipolarPx, kTrackConfidence, inliers);
   // Without a model OpenCV leaves the mask uninitialised.
   for (std::size_t i = 0; i < kept.size(); ++i) {
     kept[i] = !model.empty() && inliers.at<std::uint8_t>(static_cast<int>(i)) != 0;
@@ -75,7 +75,7 @@ std::vector<cv::Point2f> FeatureTracker::follow(const cv::Mat& image) {
   std::vector<std::uint8_t> found;
   std::vector<std::uint8_t> found_back;
   std::vector<float> error;
-  const cv::Size window(kWindowPx, kWindowPx);
+  const cv::Size window(kFlowWindowPx, kFlowWindowPx);
   cv::calcOpticalFlowPyrLK(before_, image, from, to, found, error, window, kPyramidLevels);
   cv::calcOpticalFlowPyrLK(image, before_, to, back, found_back, error, window, kPyramidLevels);
   std::vector<bool> kept(from.size());

@@ -12,7 +12,7 @@
 namespace fast_edi {
 namespace {
 
-constexpr int kWindowPx = 7;
+constexpr int kContrastWindowPx = 7;
 constexpr double kWindowSigmaPx = 7.0 / 6.0;
 constexpr double kActiveVariance = 0.1;
 constexpr double kFlatDeviation = 0.1;
@@ -73,8 +73,8 @@ cv::Mat1d normalisedCoefficients(const cv::Mat& image) {
   image.convertTo(values, CV_64F);
   const auto local_mean = [](const cv::Mat1d& of) {
     cv::Mat1d mean;
-    cv::GaussianBlur(of, mean, {kWindowPx, kWindowPx}, kWindowSigmaPx, kWindowSigmaPx,
-                     cv::BORDER_REPLICATE);
+    cv::GaussianBlur(of, mean, {kContrastWindowPx, kContrastWindowPx}, kWindowSigmaPx,
+                     kWindowSigmaPx, cv::BORDER_REPLICATE);
     return mean;
   };
   const cv::Mat1d mean = local_mean(values);

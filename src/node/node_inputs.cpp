@@ -5,13 +5,14 @@
 #include <ros/transport_hints.h>
 #include <boost/function.hpp>
 
+#include "node/queue_lengths.hpp"
+
 namespace fast_edi {
 namespace {
 
 constexpr std::uint32_t kEventQueue = 1000;
 constexpr std::uint32_t kImageQueue = 100;
 constexpr std::uint32_t kExposureQueue = 100;
-constexpr std::uint32_t kLatestWins = 1;
 /// A fraction of the shortest sensible close timeout.
 const ros::WallDuration kTickPeriod(0.004);
 

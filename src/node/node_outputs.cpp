@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <exception>
 
+#include "node/queue_lengths.hpp"
+
 namespace fast_edi {
 namespace {
 
-constexpr std::uint32_t kLatestWins = 1;
 constexpr std::uint32_t kOutputQueue = 100;
 /// Frames whose latent images fit into their queue. One brings up to twice `latent_images` at once.
 constexpr int kLatentQueueFrames = 2;

@@ -19,7 +19,6 @@ constexpr std::size_t kX = 1;
 constexpr std::size_t kY = 2;
 constexpr std::size_t kPolarity = 3;
 constexpr std::size_t kColumns = 4;
-constexpr std::size_t kAbsent = SIZE_MAX;
 /// Time may fall in one of so many lines.
 constexpr std::size_t kLinesForOneFall = 100;
 /// What the layout is found out by.
@@ -29,7 +28,7 @@ constexpr std::size_t kShownBytes = 80;
 /// Bytes at the end of the file that hold its last line.
 constexpr std::size_t kTailBytes = 4096;
 
-using Row = std::array<double, kColumns>;
+using EventRow = std::array<double, kColumns>;
 
 /// What the first lines say of a column.
 struct ColumnRange {
@@ -40,7 +39,7 @@ struct ColumnRange {
   double span() const { return most - least; }
 };
 
-std::array<ColumnRange, kColumns> rangesOf(const std::vector<Row>& rows) {
+std::array<ColumnRange, kColumns> rangesOf(const std::vector<EventRow>& rows) {
   std::array<ColumnRange, kColumns> ranges;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (std::size_t c = 0; c < kColumns; ++c) {
@@ -53,8 +52,8 @@ std::array<ColumnRange, kColumns> rangesOf(const std::vector<Row>& rows) {
   return ranges;
 }
 
-bool isPolarity(const std::vector<Row>& rows, std::size_t column) {
-  return std::all_of(rows.begin(), rows.end(), [column](const Row& row) {
+bool isPolarity(const std::vector<EventRow>& rows, std::size_t column) {
+  return std::all_of(rows.begin(), rows.end(), [column](const EventRow& row) {
     return row[column] == 0.0 || row[column] == 1.0 || row[column] == -1.0;
   });
 }
@@ -83,7 +82,7 @@ bool isWhole(const EventTextLayout& layout) {
 }
 
 /// Columns by what the first lines hold; nothing when that is not clear.
-std::optional<EventTextLayout> layoutOf(const std::vector<Row>& rows, SensorSize size) {
+std::optional<EventTextLayout> layoutOf(const std::vector<EventRow>& rows, SensorSize size) {
   const std::array<ColumnRange, kColumns> ranges = rangesOf(rows);
   EventTextLayout layout;
   layout.columns.fill(kAbsent);
@@ -142,7 +141,7 @@ void EventTextReader::findLayout(const std::vector<std::int64_t>& frames) {
   LineReader lines(path_);
   std::optional<EventTextLayout> named;
   std::optional<int> unit;
-  std::vector<Row> rows;
+  std::vector<EventRow> rows;
   std::vector<std::string_view> fields;
   while (rows.size() < kSampleLines) {
     const auto line = lines.next();
@@ -162,7 +161,7 @@ void EventTextReader::findLayout(const std::vector<std::int64_t>& frames) {
         continue;
       }
     }
-    Row row = {};
+    EventRow row = {};
     bool sound = !comment && fields.size() >= kColumns;
     for (std::size_t c = 0; sound && c < kColumns; ++c) {
       const std::optional<Decimal> number = parseDecimal(fields[named ? named->columns[c]

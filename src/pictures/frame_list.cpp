@@ -19,7 +19,6 @@ namespace fs = std::filesystem;
 
 /// Frames come no faster; 1000 times as slow is the next unit.
 constexpr double kLeastPeriod_ns = 2e6;
-constexpr std::size_t kAbsent = SIZE_MAX;
 
 const char* const kExposureStarts = "Exposure_start.txt";
 const char* const kExposureEnds = "Exposure_end.txt";

@@ -65,6 +65,8 @@ std::optional<Decimal> parseDecimal(std::string_view text);
 constexpr int kSeconds = 9;
 constexpr int kMilliseconds = 6;
 constexpr int kMicroseconds = 3;
+constexpr std::size_t kAbsent = SIZE_MAX;  ///< place of a column that a table has not
+
 constexpr int kNanoseconds = 0;
 
 /// A column by its name, e.g. "t_us": lower case, without the unit at its end.

@@ -16,12 +16,6 @@ constexpr std::int64_t kBeforeStart_ns = 20 * kNanosecondsPerMillisecond;
 /// Refused, so that its frame has none and those behind it keep their own.
 constexpr std::int64_t kNoExposure_us = 0;
 
-/// What a frame's owner points to.
-struct OwnedFrame {
-  StoredImage image;
-  int dimensions = 2;
-};
-
 SensorSize valid(SensorSize size) {
   if (size.width < 1 || size.width > kMaxSide_px || size.height < 1 || size.height > kMaxSide_px) {
     throw std::invalid_argument(
@@ -32,6 +26,12 @@ SensorSize valid(SensorSize size) {
 }
 
 }  // namespace
+
+/// What a frame's owner points to.
+struct OwnedFrame {
+  StoredImage image;
+  int dimensions = 2;
+};
 
 MutableImageView ArraySink::begin(const InputFrame& input) {
   buffer_ = makeBuffer(input.image.size, input.image.format);
@@ -102,20 +102,30 @@ void ArrayDeblurrer::addFrame(const ImageView& image, int dimensions, std::int64
                                 std::to_string(shortest) + ".." + std::to_string(longest) +
                                 " (1 us to 1 s in the given time_unit)");
   }
-  auto owned = std::make_shared<OwnedFrame>();
+
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::shared_ptr<OwnedFrame> owned = unusedFrame();
   owned->image.assign(image);
   owned->dimensions = dimensions;
   InputFrame frame;
   frame.stamp_ns = stamp * unit_ns_;
   frame.image = owned->image.view();
   frame.owner = owned;
-
-  const std::lock_guard<std::mutex> lock(mutex_);
   const std::int64_t now_ns = advanceTo(frame.stamp_ns);
   deblurrer_.addFrame(std::move(frame), now_ns);
   const std::int64_t exposure_us =
       exposure ? *exposure * unit_ns_ / kNanosecondsPerMicrosecond : kNoExposure_us;
   deblurrer_.addExposure(static_cast<std::int32_t>(exposure_us), now_ns);
+}
+
+std::shared_ptr<OwnedFrame> ArrayDeblurrer::unusedFrame() {
+  const auto unused = std::find_if(frames_.begin(), frames_.end(),
+                                   [](const auto& frame) { return frame.use_count() == 1; });
+  if (unused != frames_.end()) {
+    return *unused;
+  }
+  frames_.push_back(std::make_shared<OwnedFrame>());
+  return frames_.back();
 }
 
 // A stream counts as complete between its events. These lie in no exposure.
@@ -139,7 +149,7 @@ void ArrayDeblurrer::finish() {
   deblurrer_.finish();
 }
 
-std::deque<FrameOutput> ArrayDeblurrer::take() {
+std::vector<FrameOutput> ArrayDeblurrer::take() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return sink_.take();
 }

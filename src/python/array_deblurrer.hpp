@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -43,13 +42,15 @@ class ArraySink : public FrameSink {
   MutableImageView beginLatent(const InputFrame& input) override;
   void finishLatent(const InputFrame& input, std::int64_t stamp_ns) override;
 
-  std::deque<FrameOutput> take() { return std::exchange(outputs_, {}); }
+  std::vector<FrameOutput> take() { return std::exchange(outputs_, {}); }
 
  private:
   const bool video_;
   PixelBuffer buffer_;
-  std::deque<FrameOutput> outputs_;
+  std::vector<FrameOutput> outputs_;
 };
+
+struct OwnedFrame;
 
 /// Calls may come from several threads, which take turns; none needs the interpreter's lock.
 class ArrayDeblurrer {
@@ -73,7 +74,7 @@ class ArrayDeblurrer {
   /// Events are complete up to here, though none may have come for a while.
   void endAt(std::int64_t t);
   void finish();
-  std::deque<FrameOutput> take();
+  std::vector<FrameOutput> take();
 
   DeblurCounters counters();
   DeblurStatus status();
@@ -81,6 +82,8 @@ class ArrayDeblurrer {
 
  private:
   void addMark(std::int64_t t_ns);
+  /// One that no frame in the pipeline has.
+  std::shared_ptr<OwnedFrame> unusedFrame();
   std::int64_t advanceTo(std::int64_t t_ns);
 
   const SensorSize size_;
@@ -89,6 +92,8 @@ class ArrayDeblurrer {
   ArraySink sink_;
   Deblurrer deblurrer_;
   std::vector<std::uint8_t> records_;  ///< memory for the events of a call
+  /// As many as have waited at once: a new one costs as much time as the copy of the pixels.
+  std::vector<std::shared_ptr<OwnedFrame>> frames_;
   std::int64_t now_ns_ = 0;
   std::uint32_t sequence_ = 0;  ///< number of the last event array
 };

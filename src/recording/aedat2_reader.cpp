@@ -17,6 +17,7 @@
 #include "recording/aps_frame.hpp"
 #include "recording/damage_notes.hpp"
 #include "recording/davis_geometry.hpp"
+#include "recording/text_header.hpp"
 
 namespace fast_edi {
 namespace {
@@ -24,7 +25,6 @@ namespace {
 constexpr std::size_t kRecordBytes = 8;
 constexpr std::size_t kBlockBytes = std::size_t{1} << 18;  ///< of whole records
 constexpr std::int64_t kMaxItem_us = 10'000;               ///< an item spans no more
-constexpr std::size_t kMaxHeaderBytes = std::size_t{4} << 20;
 
 // Bits of an address.
 constexpr std::uint32_t kNoEvent = 1U << 31;
@@ -108,10 +108,7 @@ class Aedat2Reader : public Recording {
   std::string readHeader(const std::string& path) {
     constexpr std::string_view kChip = "# AEChip: ";
     std::vector<std::uint8_t> scratch;
-    const auto bytes =
-        static_cast<std::size_t>(std::min<std::uint64_t>(file_.size(), kMaxHeaderBytes));
-    const std::uint8_t* data = file_.read(0, bytes, scratch);
-    std::string_view text(reinterpret_cast<const char*>(data), data != nullptr ? bytes : 0);
+    std::string_view text = textHeader(file_, scratch);
     std::string camera;
     while (!text.empty() && text[0] == '#') {
       const std::size_t end = text.find('\n');

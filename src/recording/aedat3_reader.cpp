@@ -15,11 +15,11 @@
 #include "recording/davis_geometry.hpp"
 #include "recording/imu_units.hpp"
 #include "recording/number_at.hpp"
+#include "recording/text_header.hpp"
 
 namespace fast_edi {
 namespace {
 
-constexpr std::size_t kMaxHeaderBytes = std::size_t{4} << 20;
 constexpr std::string_view kHeaderEnd = "#!END-HEADER";
 
 // Kinds of packets.
@@ -105,10 +105,7 @@ class Aedat3Reader : public Recording {
   /// \return the camera that it names
   std::string readHeader(const std::string& path) {
     std::vector<std::uint8_t> scratch;
-    const auto bytes =
-        static_cast<std::size_t>(std::min<std::uint64_t>(file_.size(), kMaxHeaderBytes));
-    const std::uint8_t* data = file_.read(0, bytes, scratch);
-    std::string_view text(reinterpret_cast<const char*>(data), data != nullptr ? bytes : 0);
+    std::string_view text = textHeader(file_, scratch);
     std::string camera;
     while (!text.empty() && text[0] == '#') {
       const std::size_t end = text.find('\n');

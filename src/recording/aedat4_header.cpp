@@ -15,7 +15,7 @@ namespace fast_edi {
 namespace {
 
 constexpr std::size_t kMagicBytes = sizeof(Aedat4Reader::kMagic) - 1;
-constexpr std::uint32_t kMaxHeaderBytes = 16 << 20;
+constexpr std::uint32_t kMaxIoHeaderBytes = 16 << 20;
 /// Larger tables are not read: the file is then read in its own order.
 constexpr std::size_t kMaxTableBytes = std::size_t{256} << 20;
 
@@ -196,7 +196,7 @@ Aedat4Header readAedat4Header(const ByteSource& file, const std::string& path) {
   std::uint32_t size = 0;
   std::memcpy(&size, bytes + kMagicBytes, sizeof(size));
   const std::uint64_t header_end = kMagicBytes + sizeof(size) + std::uint64_t{size};
-  if (size > kMaxHeaderBytes || header_end > file.size()) {
+  if (size > kMaxIoHeaderBytes || header_end > file.size()) {
     fail(kMagicBytes, "a header of " + std::to_string(size) + " bytes, expected at most " +
                           std::to_string(file.size() - kMagicBytes - sizeof(size)) +
                           ", to the end of the file");

@@ -13,9 +13,9 @@ namespace {
 // all but x and y of the first one lie at the same places of blocks of 16 bytes.
 constexpr std::size_t kBlockBytes = 16;
 constexpr std::size_t kFirstBytes = 13;
-constexpr std::size_t kSeconds = 4;
-constexpr std::size_t kNanoseconds = 8;
-constexpr std::size_t kPolarity = 12;
+constexpr std::size_t kSecondsOffset = 4;
+constexpr std::size_t kNanosecondsOffset = 8;
+constexpr std::size_t kPolarityOffset = 12;
 
 }  // namespace
 
@@ -40,14 +40,14 @@ bool EventArrayDecoder::decode(std::vector<Event>& events, std::size_t max) {
   for (; done_ < count_ && events.size() < max; ++done_) {
     const std::size_t block = done_ * kBlockBytes;
     const std::size_t x = done_ == 0 ? 0 : block - sizeof(std::uint16_t);
-    const std::int64_t t_ns = read<std::int32_t>(block + kSeconds) * kNanosecondsPerSecond +
-                              read<std::uint32_t>(block + kNanoseconds);
+    const std::int64_t t_ns = read<std::int32_t>(block + kSecondsOffset) * kNanosecondsPerSecond +
+                              read<std::uint32_t>(block + kNanosecondsOffset);
     if (!isStamp(t_ns)) {
       ++untold_;
       continue;
     }
     events.push_back({read<std::uint16_t>(x), read<std::uint16_t>(x + sizeof(std::uint16_t)), t_ns,
-                      data_[block + kPolarity] != 0});
+                      data_[block + kPolarityOffset] != 0});
   }
   return done_ < count_;
 }

@@ -8,8 +8,6 @@
 namespace fast_edi {
 namespace {
 
-constexpr std::uint64_t kNanoseconds = kNanosecondsPerMicrosecond;  ///< in a microsecond
-
 // libcaer.
 constexpr std::size_t kLibcaerBytes = 8;
 constexpr std::uint32_t kLibcaerValid = 1;
@@ -143,11 +141,12 @@ void EventPacketDecoder::decodeLibcaer(const std::uint8_t* word, std::vector<Eve
   }
   // Times may lie a little behind one another; a wrap takes them back by nearly all there is.
   if (libcaer_.last_low_us > low_us && libcaer_.last_low_us - low_us > kLibcaerWrap_us / 2) {
-    libcaer_.high_ns += kLibcaerWrap_us * kNanoseconds;
+    libcaer_.high_ns += kLibcaerWrap_us * kNanosecondsPerMicrosecond;
   }
   libcaer_.last_low_us = low_us;
-  add(libcaer_.high_ns + low_us * kNanoseconds, (data >> kLibcaerXShift) & kLibcaerSide,
-      (data >> kLibcaerYShift) & kLibcaerSide, (data & kLibcaerOn) != 0, events);
+  add(libcaer_.high_ns + low_us * kNanosecondsPerMicrosecond,
+      (data >> kLibcaerXShift) & kLibcaerSide, (data >> kLibcaerYShift) & kLibcaerSide,
+      (data & kLibcaerOn) != 0, events);
 }
 
 void EventPacketDecoder::decodeMono(const std::uint8_t* word, std::vector<Event>& events) {
@@ -164,7 +163,7 @@ void EventPacketDecoder::decodeMono(const std::uint8_t* word, std::vector<Event>
 }
 
 std::uint64_t EventPacketDecoder::wordTime() const {
-  return (word_.time_high_us + word_.time_low_us) * kNanoseconds;
+  return (word_.time_high_us + word_.time_low_us) * kNanosecondsPerMicrosecond;
 }
 
 void EventPacketDecoder::addMask(unsigned mask, unsigned count, bool along_x,

@@ -5,11 +5,9 @@
 namespace fast_edi {
 namespace {
 
-constexpr std::size_t kSizePrefixBytes = 4;
 constexpr std::size_t kIdentifierOffset = 8;  ///< behind the size and the root's offset
 constexpr std::size_t kIdentifierBytes = 4;
 constexpr std::size_t kVtableHeaderBytes = 4;  ///< both sizes
-constexpr std::size_t kReferenceBytes = 4;
 
 }  // namespace
 

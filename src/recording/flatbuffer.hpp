@@ -18,6 +18,9 @@
 
 namespace fast_edi {
 
+constexpr std::size_t kSizePrefixBytes = 4;  ///< ahead of a buffer that says its own size
+constexpr std::size_t kReferenceBytes = 4;   ///< the distance to a string, vector or table
+
 /// Bytes that may be shorter than what lies in them says.
 struct FlatBytes {
   const std::uint8_t* data = nullptr;

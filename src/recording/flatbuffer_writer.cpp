@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
+#include "recording/flatbuffer.hpp"
+
 namespace fast_edi {
 namespace {
 
-constexpr std::size_t kSizePrefixBytes = 4;
 constexpr std::size_t kRootOffset = 4;
 constexpr std::size_t kFirstTable = 12;  ///< behind size, root and identifier
 constexpr std::size_t kLargestAlignment = 8;
-constexpr std::size_t kReferenceBytes = 4;
 
 }  // namespace
 

@@ -15,7 +15,7 @@ namespace {
 
 /// Thresholds are not let below this part of the mean: a comparator with none would oscillate.
 constexpr double kSmallestThreshold = 0.2;
-constexpr std::int64_t kNever = 0;
+constexpr std::int64_t kNotRefractory = 0;
 /// A step resolves the low-pass when it is at most this part of its shortest time constant.
 constexpr double kStepPerTimeConstant = 0.5;
 
@@ -136,7 +136,7 @@ void EventSensor::begin(std::int64_t t_ns, const cv::Mat1f& irradiance) {
   respond(irradiance, log_);
   log_.copyTo(input_log_);
   next_log_.create(log_.size());
-  free_ns_.assign(pixels, kNever);
+  free_ns_.assign(pixels, kNotRefractory);
   level_.resize(pixels);
   boost::random::uniform_real_distribution<double> unit(0.0, 1.0);
   const float* log = log_[0];
@@ -225,12 +225,12 @@ void EventSensor::advancePixel(std::size_t pixel, const Step& step, double from_
   const double leak_per_ns = seconds(leak_[pixel]);
   double t = from_ns;
   while (true) {
-    if (free_ns_[pixel] != kNever) {
+    if (free_ns_[pixel] != kNotRefractory) {
       const double free = static_cast<double>(free_ns_[pixel] - step.start_ns);
       if (free >= to_ns) return;
       t = std::max(t, free);
       level = step.at(pixel, t);
-      free_ns_[pixel] = kNever;
+      free_ns_[pixel] = kNotRefractory;
     }
     // Difference between signal and level: linear in time, the level's leak included.
     const double now = step.at(pixel, t) - level;
@@ -267,7 +267,7 @@ void EventSensor::advance(std::int64_t t_ns, const cv::Mat1f& irradiance,
   auto noise = noise_.cbegin();
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     const bool noisy = noise != noise_.cend() && noise->pixel == pixel;
-    if (!noisy && free_ns_[pixel] == kNever) {
+    if (!noisy && free_ns_[pixel] == kNotRefractory) {
       // Most pixels: neither threshold is reached.
       const double then = step.next[pixel] - level_[pixel] + leak_[pixel] * leak_s;
       if (then < on_[pixel] && then > -off_[pixel]) {
@@ -279,7 +279,7 @@ void EventSensor::advance(std::int64_t t_ns, const cv::Mat1f& irradiance,
     for (; noise != noise_.cend() && noise->pixel == pixel; ++noise) {
       advancePixel(pixel, step, t, noise->t_ns, events);
       t = noise->t_ns;
-      if (free_ns_[pixel] != kNever) continue;  // still refractory
+      if (free_ns_[pixel] != kNotRefractory) continue;  // still refractory
       level_[pixel] = step.at(pixel, t);
       fire(pixel, step, t, noise->on, events);
     }

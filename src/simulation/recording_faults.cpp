@@ -8,7 +8,7 @@ namespace fast_edi {
 namespace {
 
 /// Far enough back that no interval to it overflows.
-constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min() / 2;
+constexpr std::int64_t kLongAgo_ns = std::numeric_limits<std::int64_t>::min() / 2;
 /// How much too early an unordered event is stamped.
 constexpr std::int64_t kUnordered_ns = 200 * kNanosecondsPerMicrosecond;
 
@@ -103,8 +103,8 @@ FaultyStream::FaultyStream(const RecordingFaults& faults, SensorSize size,
       middle_ns_(timing.start_ns + kNanosecondsPerMicrosecond *
                                        (timing.lead_us + timing.period_us * (timing.frames / 2))),
       until_skip_(faults.skip_filter),
-      last_raw_ns_(size.pixelCount(), kNever),
-      last_passed_ns_(size.pixelCount(), kNever) {}
+      last_raw_ns_(size.pixelCount(), kLongAgo_ns),
+      last_passed_ns_(size.pixelCount(), kLongAgo_ns) {}
 
 /// As the hardware does it: a pixel's eight neighbours count, removed events among them, the pixel
 /// itself does not.

@@ -32,6 +32,14 @@ struct ParameterProposal {
 /// "start", "mid" or "end".
 std::string instantName(ExposureInstant instant);
 
+/// A millisecond, to divide times by that are shown in milliseconds [ns].
+constexpr double kMs = static_cast<double>(kNanosecondsPerMillisecond);
+
+/// A number as printf's %llu takes it.
+inline unsigned long long count(std::uint64_t value) {
+  return value;
+}
+
 /// printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string textOf(const char* format, ...);
 

@@ -6,7 +6,7 @@
 namespace fast_edi {
 namespace {
 
-constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
+constexpr std::int64_t kNoSlice = std::numeric_limits<std::int64_t>::min();
 /// A hot pixel fires in (nearly) each of these.
 constexpr std::int64_t kSlice_ns = 50 * kNanosecondsPerMillisecond;
 constexpr std::uint64_t kLeastSlices = 8;
@@ -22,14 +22,14 @@ PixelActivity::PixelActivity(SensorSize size)
     : size_(size),
       counts_(size.pixelCount()),
       busy_slices_(size.pixelCount()),
-      last_slice_(size.pixelCount(), kNever) {}
+      last_slice_(size.pixelCount(), kNoSlice) {}
 
 void PixelActivity::restart(std::int64_t t_ns) {
   duration_ns_ += newest_ns_ - start_ns_;
-  std::fill(last_slice_.begin(), last_slice_.end(), kNever);
+  std::fill(last_slice_.begin(), last_slice_.end(), kNoSlice);
   start_ns_ = t_ns;
   newest_ns_ = t_ns;
-  slice_ = kNever;
+  slice_ = kNoSlice;
 }
 
 void PixelActivity::add(const Event& event) {

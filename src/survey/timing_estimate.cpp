@@ -14,7 +14,6 @@ namespace fast_edi {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMs = static_cast<double>(kNanosecondsPerMillisecond);
 /// Steps of the coarse search: this part of the exposure, within limits.
 constexpr double kCoarsePart = 0.25;
 constexpr double kFinestCoarse_ns = 1.5 * kMs;

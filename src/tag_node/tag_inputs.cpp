@@ -6,13 +6,14 @@
 #include <ros/transport_hints.h>
 #include <boost/function.hpp>
 
+#include "node/queue_lengths.hpp"
+
 namespace fast_edi {
 namespace {
 
 constexpr char kImage[] = "image";
 /// Some frames may wait for a slow one; where all are slow, new ones are worth more than old ones.
 constexpr std::uint32_t kImageQueue = 10;
-constexpr std::uint32_t kLatestWins = 1;
 
 }  // namespace
 

@@ -2,10 +2,11 @@
 
 #include <cstdint>
 
+#include "node/queue_lengths.hpp"
+
 namespace fast_edi {
 namespace {
 
-constexpr std::uint32_t kLatestWins = 1;
 constexpr std::uint32_t kOutputQueue = 100;
 
 }  // namespace

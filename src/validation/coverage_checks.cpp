@@ -7,7 +7,6 @@
 namespace fast_edi {
 namespace {
 
-constexpr double kMs = static_cast<double>(kNanosecondsPerMillisecond);
 constexpr std::size_t kLeastFrames = 4;
 /// Pauses are alike when they differ by less than this part from their median ...
 constexpr double kAlike = 0.3;

@@ -5,13 +5,8 @@
 namespace fast_edi {
 namespace {
 
-constexpr double kMs = static_cast<double>(kNanosecondsPerMillisecond);
 /// Messages may be missing for the first and the last frame.
 constexpr std::uint64_t kTolerablyUnpaired = 2;
-
-unsigned long long count(std::uint64_t value) {
-  return value;
-}
 
 }  // namespace
 

@@ -7,7 +7,6 @@
 namespace fast_edi {
 namespace {
 
-constexpr double kMs = static_cast<double>(kNanosecondsPerMillisecond);
 /// Bins of a histogram that are compared on either side of an edge.
 constexpr std::size_t kSide = 3;
 /// Filter times that are looked for.
@@ -35,15 +34,11 @@ constexpr double kAtOnce = 0.22;
 constexpr double kMostEarlier = 0.01;
 /// Pixels whose shortest time lies within an octave above the edge.
 constexpr double kOctave = 2.0;
-constexpr std::size_t kEnoughPixels = 30;
+constexpr std::size_t kEnoughEdgePixels = 30;
 constexpr double kMissingPolarity = 0.01;
 constexpr double kImbalance = 2.0;
 constexpr std::uint64_t kEnoughForBalance = 1000;
 constexpr std::size_t kListedPixels = 8;  ///< as many as the hardware can mask
-
-unsigned long long count(std::uint64_t value) {
-  return value;
-}
 
 /// Natural log of how much less there is behind a bin than before it. A peak just before the bin
 /// does not count as a fall: what lies before the peak is compared, too.
@@ -182,7 +177,7 @@ std::vector<Finding> checkFilters(const EventStatistics& statistics, double stre
   }
   const auto edge_ns = refractoryEdgeNs(statistics.pixelTimes());
   // A few hot pixels with a beat of their own are no filter.
-  if (edge_ns && statistics.pixelsWithShortest(*edge_ns, kOctave * *edge_ns) >= kEnoughPixels) {
+  if (edge_ns && statistics.pixelsWithShortest(*edge_ns, kOctave * *edge_ns) >= kEnoughEdgePixels) {
     findings.push_back(
         {"refractory-filter", "events of a pixel within 0.2 ms of each other, too",
          textOf("none within %.2f ms of the pixel's last, many from there on", *edge_ns / kMs),

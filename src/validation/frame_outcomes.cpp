@@ -14,10 +14,6 @@ DeblurParameters withoutFilters(DeblurParameters parameters) {
   return parameters;
 }
 
-unsigned long long count(std::uint64_t value) {
-  return value;
-}
-
 }  // namespace
 
 FrameOutcomes::FrameOutcomes(const DeblurParameters& parameters)

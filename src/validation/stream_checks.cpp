@@ -9,13 +9,8 @@
 namespace fast_edi {
 namespace {
 
-constexpr double kMs = static_cast<double>(kNanosecondsPerMillisecond);
 /// Unordered events below this part come from the merging of packets and are few.
 constexpr double kLeastUnorderedPart = 1e-5;
-
-unsigned long long count(std::uint64_t value) {
-  return value;
-}
 
 void checkSizes(const RecordingSurvey& survey, std::vector<Finding>& findings) {
   std::map<std::pair<int, int>, std::uint64_t> frame_sizes;

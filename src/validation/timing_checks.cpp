@@ -8,7 +8,6 @@
 namespace fast_edi {
 namespace {
 
-constexpr double kMs = static_cast<double>(kNanosecondsPerMillisecond);
 constexpr double kUs = static_cast<double>(kNanosecondsPerMicrosecond);
 /// Shifts this near to start, mid or end, as part of the exposure, are taken as that.
 constexpr double kNear = 0.10;

@@ -18,9 +18,9 @@ constexpr std::int64_t kBurstDutyDivisor = 10;
 constexpr int kBurstPatchPx = 64;
 constexpr int kWalkPatchPx = 8;
 
-class Random {
+class SpecRandom {
  public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  explicit SpecRandom(std::uint64_t seed) : engine_(seed) {}
   /// In [0, bound), from the high bits. \pre 0 < bound < 2^32
   std::uint64_t below(std::uint64_t bound) { return ((engine_() >> 32) * bound) >> 32; }
   bool flip() { return (engine_() >> 63) != 0; }
@@ -32,20 +32,20 @@ class Random {
 };
 
 /// Time of event i: its even share of the stream plus jitter within it, in whole microseconds.
-std::int64_t timeOf(std::size_t i, const EventSpec& spec, Random& random) {
+std::int64_t timeOf(std::size_t i, const EventSpec& spec, SpecRandom& random) {
   const double share = (static_cast<double>(i) + random.unit()) / static_cast<double>(spec.count);
   const std::int64_t offset_us = static_cast<std::int64_t>(
       share * static_cast<double>(spec.duration_ns / kNanosecondsPerMicrosecond));
   return spec.start_ns + offset_us * kNanosecondsPerMicrosecond;
 }
 
-Event randomEvent(int x0, int y0, int width, int height, std::int64_t t_ns, Random& random) {
+Event randomEvent(int x0, int y0, int width, int height, std::int64_t t_ns, SpecRandom& random) {
   const std::uint64_t pixel = random.below(static_cast<std::uint64_t>(width) * height);
   return {static_cast<std::uint16_t>(x0 + static_cast<int>(pixel % width)),
           static_cast<std::uint16_t>(y0 + static_cast<int>(pixel / width)), t_ns, random.flip()};
 }
 
-std::vector<Event> uniform(const EventSpec& spec, Random& random) {
+std::vector<Event> uniformEvents(const EventSpec& spec, SpecRandom& random) {
   std::vector<Event> events;
   events.reserve(spec.count);
   for (std::size_t i = 0; i < spec.count; ++i) {
@@ -61,7 +61,7 @@ struct Edge {
   double offset_px, sweeps;
 };
 
-std::vector<Event> movingEdges(const EventSpec& spec, Random& random) {
+std::vector<Event> movingEdges(const EventSpec& spec, SpecRandom& random) {
   const double width = spec.size.width;
   const double height = spec.size.height;
   const double radius = 0.5 * std::hypot(width, height);
@@ -96,7 +96,7 @@ std::vector<Event> movingEdges(const EventSpec& spec, Random& random) {
   return events;
 }
 
-std::vector<Event> hotPixel(const EventSpec& spec, bool alternate, Random& random) {
+std::vector<Event> hotPixel(const EventSpec& spec, bool alternate, SpecRandom& random) {
   const auto x = static_cast<std::uint16_t>(spec.size.width / 2);
   const auto y = static_cast<std::uint16_t>(spec.size.height / 2);
   std::vector<Event> events;
@@ -108,7 +108,7 @@ std::vector<Event> hotPixel(const EventSpec& spec, bool alternate, Random& rando
   return events;
 }
 
-std::vector<Event> bursts(const EventSpec& spec, Random& random) {
+std::vector<Event> bursts(const EventSpec& spec, SpecRandom& random) {
   const int width = std::min(kBurstPatchPx, spec.size.width);
   const int height = std::min(kBurstPatchPx, spec.size.height);
   const std::int64_t burst_ns = spec.duration_ns / static_cast<std::int64_t>(kBurstCount);
@@ -131,7 +131,7 @@ std::vector<Event> bursts(const EventSpec& spec, Random& random) {
   return events;
 }
 
-std::vector<Event> randomWalks(const EventSpec& spec, Random& random) {
+std::vector<Event> randomWalks(const EventSpec& spec, SpecRandom& random) {
   const int width = std::min(kWalkPatchPx, spec.size.width);
   const int height = std::min(kWalkPatchPx, spec.size.height);
   std::vector<Event> events;
@@ -164,10 +164,10 @@ const char* toString(EventScene scene) {
 }
 
 std::vector<Event> makeEvents(EventScene scene, const EventSpec& spec) {
-  Random random(spec.seed);
+  SpecRandom random(spec.seed);
   switch (scene) {
     case EventScene::kUniform:
-      return uniform(spec, random);
+      return uniformEvents(spec, random);
     case EventScene::kMovingEdges:
       return movingEdges(spec, random);
     case EventScene::kHotPixel:
@@ -221,7 +221,7 @@ void shiftStamps(std::int64_t by_ns, std::vector<std::uint8_t>& bytes) {
 std::vector<std::uint8_t> makeGreyImage(SensorSize size, std::uint64_t seed) {
   constexpr std::uint64_t kDarkest = 20;
   constexpr std::uint64_t kLevels = 200;
-  Random random(seed);
+  SpecRandom random(seed);
   std::vector<std::uint8_t> image(size.pixelCount());
   for (std::uint8_t& pixel : image) {
     pixel = static_cast<std::uint8_t>(kDarkest + random.below(kLevels));
