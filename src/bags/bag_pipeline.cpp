@@ -20,7 +20,7 @@ namespace {
 /// \param trust of its pixels; empty: none is trusted
 sensor_msgs::ImagePtr makeTrustImage(const sensor_msgs::Image& like,
                                      std::vector<std::uint8_t> trust) {
-  const auto image = boost::make_shared<sensor_msgs::Image>();
+  auto image = boost::make_shared<sensor_msgs::Image>();
   image->header = like.header;
   image->width = like.width;
   image->height = like.height;
