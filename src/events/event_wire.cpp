@@ -44,15 +44,18 @@ void setWirePixel(std::uint16_t x, std::uint16_t y, bool on, std::uint8_t* recor
   record[kPolarityOffset] = on ? 1 : 0;
 }
 
-void encodeWireEvent(const Event& event, std::vector<std::uint8_t>& bytes) {
-  const std::size_t begin = bytes.size();
-  bytes.resize(begin + kWireEventBytes);
-  std::uint8_t* record = bytes.data() + begin;
+void writeWireEvent(const Event& event, std::uint8_t* record) {
   setWirePixel(event.x, event.y, event.on, record);
   writeNumber(static_cast<std::uint32_t>(event.t_ns / kNanosecondsPerSecond),
               record + kSecondsOffset);
   writeNumber(static_cast<std::uint32_t>(event.t_ns % kNanosecondsPerSecond),
               record + kNanosecondsOffset);
+}
+
+void encodeWireEvent(const Event& event, std::vector<std::uint8_t>& bytes) {
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + kWireEventBytes);
+  writeWireEvent(event, bytes.data() + begin);
 }
 
 }  // namespace fast_edi

@@ -122,14 +122,16 @@ void Deblurrer::Impl::takeEvents(const WireEvents& events, SensorSize size,
 /// Plain events, by way of wire records.
 void Deblurrer::Impl::takeEvents(const Event* events, std::size_t count, SensorSize size) {
   const EventMapping& mapping = parameters_.event_mapping;
-  mapped_events_.clear();
-  mapped_events_.reserve(count * kWireEventBytes);
+  const bool as_is = mapping.isIdentity();
+  mapped_events_.resize(count * kWireEventBytes);
+  std::size_t valid = 0;
   std::for_each(events, events + count, [&](const Event& event) {
     if (isStamp(event.t_ns)) {
-      encodeWireEvent(mapping.apply(event, size), mapped_events_);
+      writeWireEvent(as_is ? event : mapping.apply(event, size),
+                     &mapped_events_[valid * kWireEventBytes]);
+      ++valid;
     }
   });
-  const std::size_t valid = mapped_events_.size() / kWireEventBytes;
   counters_.events_in += count - valid;
   counters_.events_glitched += count - valid;
   events_.take({mapped_events_.data(), valid}, mapping.apply(size), std::nullopt);

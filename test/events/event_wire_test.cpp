@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <vector>
 
 namespace fast_edi {
 namespace {
@@ -58,6 +60,18 @@ TEST(EventWire, AppendsRecordsThatReadBackInOrder) {
     EXPECT_EQ(event.t_ns, events[i].t_ns);
     EXPECT_EQ(event.on, events[i].on);
   }
+}
+
+TEST(EventWire, WritesARecordAndNothingBeside) {
+  const Event event{345, 259, kGoldenTimeNs, true};
+  std::vector<std::uint8_t> appended;
+  encodeWireEvent(event, appended);
+
+  std::vector<std::uint8_t> bytes(kWireEventBytes + 2, 0xab);
+  writeWireEvent(event, bytes.data() + 1);
+  EXPECT_EQ(bytes.front(), 0xab);
+  EXPECT_EQ(bytes.back(), 0xab);
+  EXPECT_TRUE(std::equal(appended.begin(), appended.end(), bytes.begin() + 1));
 }
 
 TEST(EventWire, FromSkipsRecords) {

@@ -34,6 +34,10 @@ Event decodeWireEvent(const std::uint8_t* record);
 /// Overwrites pixel and polarity of a record; its time stays as it is.
 void setWirePixel(std::uint16_t x, std::uint16_t y, bool on, std::uint8_t* record);
 
+/// Writes one record. \p record must point to kWireEventBytes writable bytes. \pre 0 <= event.t_ns
+/// < 2^32 s
+void writeWireEvent(const Event& event, std::uint8_t* record);
+
 /// Appends one record to \p bytes. \pre 0 <= event.t_ns < 2^32 s
 void encodeWireEvent(const Event& event, std::vector<std::uint8_t>& bytes);
 
