@@ -35,6 +35,7 @@ std::vector<std::uint8_t> serialise(const Message& message) {
 
 template <typename Message>
 void deserialise(std::vector<std::uint8_t>& bytes, Message& message) {
+  bytes.reserve(1);  // a stream computes with the address of its data, which is none otherwise
   ser::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
   ser::deserialize(stream, message);
 }

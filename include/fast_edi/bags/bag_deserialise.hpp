@@ -75,8 +75,11 @@ struct Lengths<sensor_msgs::CameraInfo> {
 /// ros::serialization::StreamOverrunException when it is shorter than it says
 template <typename Message>
 boost::shared_ptr<Message> deserialise(const BagMessage& raw) {
+  // A stream computes with the address of its data, which a message without any does not have.
+  std::uint8_t nothing = 0;
   // IStream only reads, but wants to be able to write.
-  ros::serialization::IStream stream(const_cast<std::uint8_t*>(raw.data), raw.size);
+  std::uint8_t* data = raw.data != nullptr ? const_cast<std::uint8_t*>(raw.data) : &nothing;
+  ros::serialization::IStream stream(data, raw.size);
   bag_deserialise_detail::Lengths<Message>::require(stream);
   auto message = boost::make_shared<Message>();
   stream.next(*message);
