@@ -30,6 +30,7 @@ FAST_EDI_DEBIAN_TEST=(
   shellcheck
   clang
   python3-pytest python3-pil python3-matplotlib mypy
+  xvfb xdotool
 )
 # Before Debian 12 this comes with clang.
 FAST_EDI_DEBIAN_12_TEST=(libclang-rt-dev)
@@ -53,6 +54,7 @@ FAST_EDI_NOETIC_TEST=(
   libxml2-utils shellcheck
   clang
   python3-pytest python3-pil python3-matplotlib mypy
+  xvfb xdotool
 )
 
 # fast_edi_heed_interrupts SCRIPT [ARGUMENT...]: restarts a script where SIGINT is ignored, as it is

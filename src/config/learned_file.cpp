@@ -2,11 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <filesystem>
-#include <fstream>
-#include <stdexcept>
-#include <system_error>
 
 #include <yaml-cpp/yaml.h>
 
@@ -19,24 +14,9 @@
 namespace fast_edi {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// More digits would say more than the learning knows.
 constexpr int kThresholdDecimals = 4;
 constexpr int kDelayDecimals = 0;
-
-[[noreturn]] void refuse(const std::string& path, const std::string& reason) {
-  throw std::runtime_error("cannot write " + path + ": " + reason);
-}
-
-void writeText(const std::string& path, const std::string& text) {
-  errno = 0;
-  std::ofstream file(path, std::ios::trunc);
-  file << text << std::flush;
-  if (!file) {
-    refuse(path, std::generic_category().message(errno));
-  }
-}
 
 std::string line(const ParameterRange& parameter, double value, int decimals) {
   return std::string(parameter.name) + ": " + fixedText(value, decimals) + "\n";
@@ -68,22 +48,8 @@ std::vector<std::string> learnedOverrides(const std::string& path) {
   return overrides;
 }
 
-LearnedFile::LearnedFile(const std::string& path) : path_(path), active_path_(path + ".active") {
-  writeText(active_path_, "");
-}
-
-LearnedFile::~LearnedFile() {
-  std::error_code ignored;
-  fs::remove(active_path_, ignored);
-}
-
 void LearnedFile::write(const ContrastThresholds& thresholds, std::int64_t event_delay_ns) {
-  writeText(active_path_, learnedYaml(thresholds, event_delay_ns));
-  std::error_code error;
-  fs::rename(active_path_, path_, error);
-  if (error) {
-    refuse(path_, error.message());
-  }
+  file_.write(learnedYaml(thresholds, event_delay_ns));
 }
 
 }  // namespace fast_edi

@@ -1,35 +1,23 @@
 /// \file
 /// `validate_bag`: looks through a recording for what breaks deblurring and says what to set.
 
-#include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include <ros/serialization.h>
-#include <sensor_msgs/Image.h>
-#include <std_msgs/Int32.h>
-#include <yaml-cpp/yaml.h>
 #include <boost/program_options.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "command_line.hpp"
 #include "evaluation/plot.hpp"
-#include "fast_edi/bags/bag_deserialise.hpp"
-#include "fast_edi/bags/bag_error.hpp"
 #include "fast_edi/bags/message_source.hpp"
 #include "fast_edi/bags/open_messages.hpp"
 #include "fast_edi/bags/topic_names.hpp"
-#include "fast_edi/config/parameters_from_yaml.hpp"
-#include "fast_edi/messages/event_array.hpp"
-#include "fast_edi/messages/message_conversion.hpp"
-#include "progress_bar.hpp"
 #include "validation/recording_validator.hpp"
 #include "validation/report_text.hpp"
+#include "validation_pass.hpp"
 
 namespace {
 
@@ -78,91 +66,7 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   return true;
 }
 
-struct Assumed {
-  fast_edi::AssumedParameters parameters;
-  fast_edi::DeblurParameters pipeline;
-};
-
-Assumed assumedParameters(const Arguments& arguments, const fast_edi::MessageSource& recording) {
-  fast_edi::AssumedParameters assumed;
-  assumed.thresholds_given = true;
-  std::vector<std::string> overrides = arguments.overrides;
-  if (arguments.config.empty() && !recording.biases()) {
-    YAML::Node root(YAML::NodeType::Map);
-    fast_edi::applyOverrides(root, overrides);
-    if (!root["contrast_threshold_on"].IsDefined() && !root["biases"].IsDefined()) {
-      assumed.thresholds_given = false;
-      overrides.push_back("contrast_threshold_on:=" + std::to_string(assumed.thresholds.on));
-      overrides.push_back("contrast_threshold_off:=" + std::to_string(assumed.thresholds.off));
-    }
-  }
-  const fast_edi::LoadedParameters loaded =
-      tools::loadParametersFor(recording, arguments.config, overrides);
-  tools::printWarnings(loaded);
-  assumed.thresholds = loaded.deblur.thresholds;
-  assumed.stamp_reference = loaded.deblur.stamp_reference;
-  assumed.time_offset_ns = loaded.deblur.time_offset_ns;
-  assumed.exposure_time_ns = loaded.deblur.exposure_time_ns;
-  assumed.exposure_from_parameter =
-      loaded.deblur.exposure_source == fast_edi::ExposureSource::kParameter;
-  return {assumed, loaded.deblur};
-}
-
-/// Hands a message on. \return false when it contradicts itself: it is not used
-bool feed(const fast_edi::BagMessage& message, const fast_edi::TopicNames& topics,
-          fast_edi::RecordingValidator& validator) {
-  const auto record_ns = static_cast<std::int64_t>(message.time.toNSec());
-  const std::string& topic = message.connection->topic;
-  try {
-    if (topic == topics.events) {
-      const auto array = fast_edi::deserialise<fast_edi::EventArrayView>(message);
-      validator.addEvents(array->events(), fast_edi::sensorSize(*array), array->header.seq,
-                          record_ns);
-    } else if (topic == topics.exposure) {
-      validator.addExposure(fast_edi::deserialise<std_msgs::Int32>(message)->data, record_ns);
-    } else if (topic == topics.image) {
-      const auto image = fast_edi::deserialise<sensor_msgs::Image>(message);
-      const fast_edi::ImageReading reading = fast_edi::readImage(*image);
-      if (reading.verdict == fast_edi::ImageVerdict::kMalformed) {
-        return false;
-      }
-      fast_edi::FrameMessage frame;
-      frame.stamp_ns = static_cast<std::int64_t>(image->header.stamp.toNSec());
-      frame.sequence = image->header.seq;
-      frame.record_ns = record_ns;
-      frame.size = {static_cast<int>(image->width), static_cast<int>(image->height)};
-      frame.pixels = reading.view;
-      frame.fault = reading.reason;
-      validator.addFrame(frame);
-    }
-  } catch (const ros::serialization::StreamOverrunException&) {
-    return false;
-  }
-  return true;
-}
-
-struct PassResult {
-  std::uint64_t malformed = 0;
-  std::vector<fast_edi::BagDamage> damage;
-};
-
-PassResult readThrough(const Arguments& arguments, const fast_edi::TopicNames& topics,
-                       const std::string& label, fast_edi::RecordingValidator& validator) {
-  PassResult result;
-  const std::unique_ptr<fast_edi::MessageSource> recording =
-      fast_edi::openMessages(arguments.recordings);
-  fast_edi::MessageSource& reader = *recording;
-  fast_edi::ProgressBar bar(label);
-  fast_edi::BagMessage message;
-  while (reader.next(message)) {
-    result.malformed += feed(message, topics, validator) ? 0 : 1;
-    bar.update(reader.position(), reader.length());
-  }
-  result.damage = reader.damage();
-  return result;
-}
-
-void addFileFindings(const PassResult& pass, std::vector<fast_edi::Finding>& findings) {
+void addFileFindings(const tools::ReadResult& pass, std::vector<fast_edi::Finding>& findings) {
   if (!pass.damage.empty()) {
     findings.push_back({"file-damaged", "a complete bag",
                         fast_edi::textOf("%zu places cannot be read, the first at byte %llu: %s",
@@ -212,7 +116,8 @@ int run(const Arguments& arguments) {
     tools::requireFree(curvePath(arguments), arguments.overwrite);
   }
   std::unique_ptr<fast_edi::MessageSource> recording = fast_edi::openMessages(arguments.recordings);
-  const Assumed assumed = assumedParameters(arguments, *recording);
+  const tools::ValidationStart start =
+      tools::validationStart(*recording, arguments.config, arguments.overrides);
   fast_edi::TopicNames topics = arguments.topics;
   topics.output = "/validate_bag";  // writes none: topics of deblurred frames may be there already
   {
@@ -229,18 +134,11 @@ int run(const Arguments& arguments) {
   }
   std::cout << "events " << topics.events << ", frames " << topics.image << ", exposures "
             << topics.exposure << "\n";
-  fast_edi::RecordingValidator validator(assumed.parameters, assumed.pipeline);
-  const PassResult pass = readThrough(arguments, topics, "looking through", validator);
-  if (validator.endSurvey()) {
-    readThrough(arguments, topics, "picking frames", validator);
-  }
-  fast_edi::ValidationReport report;
-  {
-    fast_edi::ProgressBar bar("comparing frames with events");
-    report = validator.finish([&bar](int done, int total) {
-      bar.update(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(total));
-    });
-  }
+  fast_edi::RecordingValidator validator(start.parameters, start.pipeline);
+  const tools::ReadResult pass =
+      tools::readThrough(arguments.recordings, topics, "looking through", validator);
+  fast_edi::ValidationReport report =
+      tools::finishValidation(arguments.recordings, topics, validator);
   addFileFindings(pass, report.findings);
   fast_edi::printReport(std::cout, validator.survey(), report);
   if (!arguments.output.empty()) {

@@ -117,6 +117,9 @@ void judgeThresholds(const RecordingSurvey& survey, const TimingEstimate& estima
                    "(response_file, response_offset_dn), look like that");
   }
   verdict.notes.push_back(note);
+  if (!are_given && warnings.empty()) {
+    verdict.proposal.thresholds = found;
+  }
   const double ratio = std::sqrt(found.on * found.off / (given.on * given.off));
   const double sigma = 0.5 * std::hypot(sigmas.on, sigmas.off);
   if (!are_given || std::abs(std::log(ratio)) < std::log(kWrongThreshold) ||
@@ -128,6 +131,7 @@ void judgeThresholds(const RecordingSurvey& survey, const TimingEstimate& estima
       "contrast", textOf("events that stand for %.2f (ON) and %.2f (OFF)", given.on, given.off),
       textOf("%.2f and %.2f fit best: the biases are others%s", found.on, found.off, cause), ""};
   if (warnings.empty()) {
+    verdict.proposal.thresholds = found;
     finding.set =
         textOf("%scontrast_threshold_on: %.2f, contrast_threshold_off: %.2f",
                ratio > 1.0 ? "driver: skip_enabled: false; if it was: " : "", found.on, found.off);

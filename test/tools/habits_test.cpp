@@ -124,6 +124,9 @@ class ToolFiles : public ::testing::Test {
            file("report/report.md")}}},
         {"simulate_davis",
          {{"--frames 1 --width 48 --height 36 --out " + quoted(file("new.bag")), file("new.bag")}}},
+        {"tune",
+         {{quoted(bag_) + config + " --as-given --screenshot " + quoted(file("out.png")),
+           file("out.png")}}},
         {"trajectory_error",
          {{quoted(bag_) + " --estimate /dvs/ground_truth/pose --plot " + quoted(file("plot.png")),
            file("plot.png")}}},
@@ -167,7 +170,7 @@ INSTANTIATE_TEST_SUITE_P(, ToolOutputs, ::testing::ValuesIn(toolNames()),
 // Names that a shell, say, would take apart.
 TEST_F(ToolFiles, MayHaveAnyName) {
   const auto all = writings();
-  for (const char* name : {"deblur_bag", "demo_prepare", "evaluate", "simulate_davis"}) {
+  for (const char* name : {"deblur_bag", "demo_prepare", "evaluate", "simulate_davis", "tune"}) {
     for (const Writing& writing : all.at(name)) {
       const auto written = runCommand(kTools + name + " " + writing.arguments);
       EXPECT_EQ(written.exit_code, 0) << name << ": " << written.output;

@@ -47,6 +47,8 @@ TEST(NoNetwork, ToolsReachForNone) {
                "' --config " + config);
   expectSilent(tool("evaluate") + "'" + input + "' --config " + config + " --output '" +
                directory.file("evaluation") + "'");
+  expectSilent(tool("tune") + "'" + input + "' --config " + config + " --screenshot '" +
+               directory.file("tune.png") + "'");
   expectSilent(tool("simulate_davis") + "--frames 1 --out '" + directory.file("sim.bag") + "'");
   expectSilent(tool("contrast_from_bias") + config);
   expectSilent(tool("list_parameters") + "--markdown");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fast_edi/base/contrast_threshold.hpp"
+#include "fast_edi/config/parameter_file.hpp"
 
 namespace fast_edi {
 
@@ -18,25 +19,17 @@ std::string learnedYaml(const ContrastThresholds& thresholds, std::int64_t event
 /// \throws ParameterError naming the file and what is wrong in it
 std::vector<std::string> learnedOverrides(const std::string& path);
 
-/// Gets its name when it is complete; until then, and for what a crash leaves of it, it is
-/// `PATH.active`.
 class LearnedFile {
  public:
-  /// Makes sure that the file can be written, before any work is done.
-  /// An existing file will be replaced.
+  /// Makes sure that the file can be written, before any work is done; see ParameterFile.
   /// \throws std::runtime_error naming the file and the reason
-  explicit LearnedFile(const std::string& path);
-  /// Leaves nothing unless write() was called.
-  ~LearnedFile();
-  LearnedFile(const LearnedFile&) = delete;
-  LearnedFile& operator=(const LearnedFile&) = delete;
+  explicit LearnedFile(const std::string& path) : file_(path) {}
 
   /// \throws std::runtime_error naming the file and the reason
   void write(const ContrastThresholds& thresholds, std::int64_t event_delay_ns);
 
  private:
-  const std::string path_;
-  const std::string active_path_;
+  ParameterFile file_;
 };
 
 }  // namespace fast_edi
