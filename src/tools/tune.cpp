@@ -145,11 +145,13 @@ Start startOf(const Arguments& arguments) {
     start.overrides = proposedOverrides(report.proposal, validator.survey());
     std::cout << "proposed by validate_bag: " << shellText(start.overrides) << "\n";
     if (!report.findings.empty()) {
-      std::cout << report.findings.size() << " findings: validate_bag says more\n";
+      std::cout << "findings of validate_bag, which says more: " << report.findings.size() << "\n";
     }
     if (!given.parameters.thresholds_given && !report.proposal.thresholds) {
-      std::cerr << "warning: contrast thresholds are not given and cannot be told: starting from "
-                << given.parameters.thresholds.on << "\n";
+      std::cerr
+          << "warning: contrast thresholds are not given, and validate_bag proposes none: starting "
+             "from "
+          << given.parameters.thresholds.on << "\n";
     }
   }
   if (!given.parameters.thresholds_given) {

@@ -105,9 +105,12 @@ TEST(TimingChecksTest, LengthAndThresholdsAreJudged) {
   doubled.threshold_sigmas = {0.1, 0.1};
   EXPECT_THAT(namesOf(judge(doubled, given).findings), ElementsAre("contrast"));
   EXPECT_THAT(judge(doubled, given).findings[0].set, HasSubstr("contrast_threshold_on: 0.50"));
+  EXPECT_EQ(judge(doubled, given).proposal.thresholds, doubled.thresholds);
   EXPECT_THAT(judge(doubled).findings, IsEmpty());
+  EXPECT_EQ(judge(doubled).proposal.thresholds, doubled.thresholds);  // none were given
   doubled.threshold_sigmas = {0.6, 0.6};
   EXPECT_THAT(judge(doubled, given).findings, IsEmpty());
+  EXPECT_EQ(judge(doubled, given).proposal.thresholds, std::nullopt);
 }
 
 TEST(TimingChecksTest, ThresholdsThatWouldBeWarnedOfAreNoProposal) {
@@ -119,6 +122,8 @@ TEST(TimingChecksTest, ThresholdsThatWouldBeWarnedOfAreNoProposal) {
   TimingVerdict verdict = judge(unusual, given);
   EXPECT_THAT(namesOf(verdict.findings), ElementsAre("contrast"));
   EXPECT_THAT(verdict.findings[0].set, Not(HasSubstr("contrast_threshold_on")));
+  EXPECT_EQ(verdict.proposal.thresholds, std::nullopt);
+  EXPECT_EQ(judge(unusual).proposal.thresholds, std::nullopt);
   EXPECT_THAT(verdict.notes,
               Contains(AllOf(HasSubstr("ON 0.85 +- 0.09"),
                              HasSubstr("not proposed, because the ON contrast threshold"))));
