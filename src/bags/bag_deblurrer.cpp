@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "calibration/learned_contrast.hpp"
 #include "fast_edi/base/number_text.hpp"
 
 namespace fast_edi {
@@ -31,6 +32,11 @@ void printLearned(std::ostream& out, const BagDeblurReport& report) {
   print(fixedText(report.thresholds.on, kThresholdDecimals), "contrast_threshold_on");
   print(fixedText(report.thresholds.off, kThresholdDecimals), "contrast_threshold_off");
   print(fixedText(delay_ms, kDelayDecimals), "ms by which events lag behind the light");
+  const std::string remark = learnedContrastRemark(report.given_thresholds, report.thresholds,
+                                                   report.counters.calibration_fits);
+  if (!remark.empty()) {
+    out << remark << "\n";
+  }
 }
 
 }  // namespace
@@ -102,7 +108,9 @@ BagDeblurrer::BagDeblurrer(MessageSource& reader, BagWriter* writer, const Topic
       latent_topic_(topics.outputLatent()),
       write_latent_(parameters.deblur.latent.rate_hz == 0),
       progress_(std::move(progress)),
-      pipeline_(topics, parameters) {}
+      pipeline_(topics, parameters) {
+  report_.given_thresholds = parameters.deblur.thresholds;
+}
 
 BagDeblurReport BagDeblurrer::run() {
   const auto start = std::chrono::steady_clock::now();

@@ -22,6 +22,7 @@
 #include <boost/program_options.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "calibration/learned_contrast.hpp"
 #include "command_line.hpp"
 #include "evaluation/comparison_sheet.hpp"
 #include "fast_edi/bags/bag_deserialise.hpp"
@@ -393,6 +394,7 @@ class Report {
   Report(const Arguments& arguments, const LoadedParameters& parameters, const BagReader& reader)
       : arguments_(arguments),
         live_(arguments.live, arguments.topics.outputImage()),
+        given_thresholds_(parameters.deblur.thresholds),
         pipeline_(arguments.topics, parameters),
         events_(parameters.deblur),
         sheet_(messagesOn(reader, arguments.topics.image)) {}
@@ -447,6 +449,7 @@ class Report {
 
   const Arguments& arguments_;
   LiveRecording live_;
+  const ContrastThresholds given_thresholds_;
   BagPipeline pipeline_;
   RecordedEvents events_;
   TrueFrames truth_;
@@ -512,7 +515,9 @@ void Report::print(std::ostream& out) const {
   printLatency(out, "image arrival to output", "Image to output",
                " (the wait for the exposure's last events included)");
   printLatency(out, "last message to output", "Close latency", "");
-  out << "\n";
+  const std::string remark = learnedContrastRemark(given_thresholds_, pipeline_.status().thresholds,
+                                                   counters.calibration_fits);
+  out << (remark.empty() ? "" : remark + "\n") << "\n";
   quality_.print(out);
 }
 

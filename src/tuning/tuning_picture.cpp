@@ -23,6 +23,8 @@ constexpr int kKnobRadius = 5;
 constexpr int kKeysWidth = 90;
 
 constexpr double kTextScale = 0.48;
+/// A smaller one is not worth a word.
+constexpr double kNoticeableGain = 1.25;
 
 const cv::Scalar kPaper = cv::Scalar::all(250);
 const cv::Scalar kInk = cv::Scalar::all(30);
@@ -35,15 +37,24 @@ void write(cv::Mat& picture, const std::string& text, int x, int line, const cv:
               kTextScale, ink, 1, cv::LINE_AA);
 }
 
-std::string sharpnessCaption(const cv::Mat& panel) {
-  if (panel.empty()) {
-    return {};
-  }
+cv::Mat greyOf(const cv::Mat& panel) {
   cv::Mat grey = panel;
   if (panel.channels() > 1) {
     cv::cvtColor(panel, grey, cv::COLOR_BGR2GRAY);
   }
-  return "sharpness " + fixedText(sharpness(grey).tenengrad_above_noise, 1);
+  return grey;
+}
+
+std::string sharpnessCaption(const cv::Mat& panel) {
+  return panel.empty()
+             ? std::string()
+             : "sharpness " + fixedText(sharpness(greyOf(panel)).tenengrad_above_noise, 1);
+}
+
+cv::Mat brighter(const cv::Mat& panel, double gain) {
+  cv::Mat result;
+  panel.convertTo(result, CV_8U, gain);
+  return result;
 }
 
 cv::Mat drawPanels(const TuningSession& session, const TunedFrame& frame) {
@@ -54,7 +65,11 @@ cv::Mat drawPanels(const TuningSession& session, const TunedFrame& frame) {
   sheet.columns = {"blurry frame", "events (red ON, blue OFF)", "deblurred"};
   SheetRow row;
   row.label = frame.description;
-  row.panels = {frame.blurry, frame.events, frame.deblurred};
+  const double gain = displayGain(greyOf(frame.blurry));
+  if (gain > kNoticeableGain) {
+    sheet.title += "  (shown " + fixedText(gain, 1) + " times as bright)";
+  }
+  row.panels = {brighter(frame.blurry, gain), frame.events, brighter(frame.deblurred, gain)};
   row.captions = {sharpnessCaption(frame.blurry), "", sharpnessCaption(frame.deblurred)};
   sheet.rows = {row};
   return drawSheet(sheet);

@@ -19,8 +19,8 @@ struct TunedFrame {
   std::string description;  ///< exposure, events, why it was not deblurred
 };
 
-/// CV_8UC3 (BGR). The size depends on that of the frame, the number of sliders and the help.
-/// \throws std::invalid_argument when \p frame has no picture at all
+/// CV_8UC3 (BGR). Dim frames are shown brighter, which the picture says. The size depends on that
+/// of the frame, the number of sliders and the help. \pre frame.blurry is not empty
 cv::Mat drawTuning(const TuningSession& session, const TunedFrame& frame);
 
 /// In short: the frame, the chosen slider and its value, the message.

@@ -28,11 +28,12 @@ struct BagDeblurReport {
   std::uint64_t messages = 0;            ///< copied
   std::uint64_t outputs = 0;             ///< frames put out
   std::uint64_t malformed_messages = 0;  ///< on a topic of ours, but unreadable: copied, not used
-  ContrastThresholds thresholds;         ///< in force at the end: given or learned
-  std::int64_t event_delay_ns = 0;       ///< the same
-  double seconds = 0.0;                  ///< wall clock
-  ros::Time last_record_time;            ///< of the last readable message
-  bool interrupted = false;              ///< ended before the end of the input, because asked to
+  ContrastThresholds given_thresholds;
+  ContrastThresholds thresholds;    ///< in force at the end: given or learned
+  std::int64_t event_delay_ns = 0;  ///< the same
+  double seconds = 0.0;             ///< wall clock
+  ros::Time last_record_time;       ///< of the last readable message
+  bool interrupted = false;         ///< ended before the end of the input, because asked to
   std::vector<BagDamage> damage;
 
   /// Events per wall-clock second [1/us].
