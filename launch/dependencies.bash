@@ -18,6 +18,7 @@ FAST_EDI_DEBIAN_BUILD=(
   libgeometry-msgs-dev libnav-msgs-dev
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
   libvisualization-msgs-dev libapriltag-dev libbz2-dev liblz4-dev libzstd-dev libtinyxml2-dev libsqlite3-dev
+  libhdf5-dev libzip-dev zlib1g-dev
   libdlib-dev libblas-dev liblapack-dev libsvm-dev
   pybind11-dev python3-dev python3-numpy
 )
@@ -43,7 +44,8 @@ FAST_EDI_NOETIC_BUILD=(
   ros-noetic-geometry-msgs ros-noetic-nav-msgs
   ros-noetic-pluginlib ros-noetic-sensor-msgs ros-noetic-std-msgs ros-noetic-visualization-msgs ros-noetic-apriltag
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
-  libbz2-dev liblz4-dev libzstd-dev libtinyxml2-dev libsqlite3-dev libdlib-dev libblas-dev liblapack-dev libsvm-dev
+  libbz2-dev liblz4-dev libzstd-dev libtinyxml2-dev libsqlite3-dev libhdf5-dev libzip-dev zlib1g-dev
+  libdlib-dev libblas-dev liblapack-dev libsvm-dev
   pybind11-dev python3-dev python3-numpy
 )
 FAST_EDI_NOETIC_RUN=(

@@ -28,16 +28,6 @@ bool hasCompressedFrames(const BagConnection& connection) {
          topic.compare(topic.size() - kSuffix.size(), kSuffix.size(), kSuffix) == 0;
 }
 
-/// `format` is "jpeg", "png", or "ENCODING; jpeg compressed ORDER".
-void convertAsFormatSays(Picture& picture, const std::string& format) {
-  const std::size_t end = format.find(';');
-  if (end != std::string::npos) {
-    const bool stored_rgb = format.find("compressed rgb", end) != std::string::npos;
-    // Pictures with other channels than that keep those that they have.
-    convertPicture(picture, format.substr(0, end), stored_rgb);
-  }
-}
-
 }  // namespace
 
 CompressedFrames::CompressedFrames(std::unique_ptr<MessageSource> source)
@@ -107,21 +97,20 @@ void CompressedFrames::decode(const BagMessage& message, const BagConnection& de
                                            " that is shorter than it says"});
     return;
   }
-  std::string fault;
-  std::optional<Picture> picture =
-      decodePicture(compressed->data.data(), compressed->data.size(), fault);
-  if (!picture) {
+  Picture picture;
+  const std::string fault = decodeCompressed(
+      {compressed->format, compressed->data.data(), compressed->data.size()}, picture);
+  if (!fault.empty()) {
     damage_.push_back({message.offset, "a frame on " + message.connection->topic + ": " + fault});
     return;
   }
-  convertAsFormatSays(*picture, compressed->format);
   sensor_msgs::Image image;
   image.header = compressed->header;
-  image.width = static_cast<std::uint32_t>(picture->size.width);
-  image.height = static_cast<std::uint32_t>(picture->size.height);
-  image.encoding = picture->encoding;
-  image.step = static_cast<std::uint32_t>(picture->pixels.size() / image.height);
-  image.data = std::move(picture->pixels);
+  image.width = static_cast<std::uint32_t>(picture.size.width);
+  image.height = static_cast<std::uint32_t>(picture.size.height);
+  image.encoding = picture.encoding;
+  image.step = static_cast<std::uint32_t>(picture.pixels.size() / image.height);
+  image.data = std::move(picture.pixels);
   bytes_.resize(ros::serialization::serializationLength(image));
   ros::serialization::OStream stream(bytes_.data(), static_cast<std::uint32_t>(bytes_.size()));
   ros::serialization::serialize(stream, image);

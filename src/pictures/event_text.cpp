@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -11,8 +10,6 @@
 
 namespace fast_edi {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::size_t kTime = 0;
 constexpr std::size_t kX = 1;
@@ -120,25 +117,23 @@ std::optional<EventTextLayout> layoutOf(const std::vector<EventRow>& rows, Senso
 
 }  // namespace
 
-std::string eventTextOf(const std::string& folder) {
+std::string eventTextOf(const FileSet& files) {
   for (const char* name : {"events.txt", "Events.txt", "events.csv", "Events.csv", "event.txt"}) {
-    std::error_code ignored;
-    const fs::path path = fs::path(folder) / name;
-    if (fs::is_regular_file(path, ignored)) {
-      return path.string();
+    if (files.has(name)) {
+      return name;
     }
   }
   return {};
 }
 
-EventTextReader::EventTextReader(const std::string& path, SensorSize size,
+EventTextReader::EventTextReader(const FileSet& files, const std::string& name, SensorSize size,
                                  const std::vector<std::int64_t>& frames)
-    : path_(path), name_(fs::path(path).filename().string()), size_(size), lines_(path) {
+    : files_(files), name_(name), size_(size), lines_(files.open(name)) {
   findLayout(frames);
 }
 
 void EventTextReader::findLayout(const std::vector<std::int64_t>& frames) {
-  LineReader lines(path_);
+  LineReader lines(files_.open(name_));
   std::optional<EventTextLayout> named;
   std::optional<int> unit;
   std::vector<EventRow> rows;
@@ -178,7 +173,8 @@ void EventTextReader::findLayout(const std::vector<std::int64_t>& frames) {
     }
   }
   if (rows.empty()) {
-    throw RecordingError(path_ + ": no event within the first " + std::to_string(lines.number()) +
+    throw RecordingError(files_.pathOf(name_) + ": no event within the first " +
+                         std::to_string(lines.number()) +
                          " lines, expected lines of time, x, y and polarity");
   }
   std::array<std::size_t, kColumns> of_rows = {kTime, kX, kY, kPolarity};
@@ -187,7 +183,7 @@ void EventTextReader::findLayout(const std::vector<std::int64_t>& frames) {
   } else {
     const std::optional<EventTextLayout> found = layoutOf(rows, size_);
     if (!found) {
-      throw RecordingError(path_ +
+      throw RecordingError(files_.pathOf(name_) +
                            ": the order of the columns is not clear; name it in the first line, "
                            "e.g. \"# t_us x y p\"");
     }
@@ -199,20 +195,18 @@ void EventTextReader::findLayout(const std::vector<std::int64_t>& frames) {
   const ColumnRange& y = ranges[of_rows[kY]];
   layout_.origin =
       x.least >= 1.0 && y.least >= 1.0 && (x.most == size_.width || y.most == size_.height) ? 1 : 0;
+  if (unit) {
+    layout_.unit = *unit;
+    return;
+  }
   const double first = rows.front()[of_rows[kTime]];
   const double last = lastTime().value_or(rows.back()[of_rows[kTime]]);
-  layout_.unit = unit ? *unit : guessUnit(first, last, frames);
+  layout_.unit = guessUnit(first, last, frames);
 }
 
 std::optional<double> EventTextReader::lastTime() const {
-  const FileSource file(path_);
-  const auto bytes = static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), kTailBytes));
-  std::vector<std::uint8_t> scratch;
-  const std::uint8_t* data = file.read(file.size() - bytes, bytes, scratch);
-  if (data == nullptr) {
-    return std::nullopt;
-  }
-  std::string_view tail(reinterpret_cast<const char*>(data), bytes);
+  const std::string end_of_text = files_.tail(name_, kTailBytes);
+  std::string_view tail(end_of_text);
   std::vector<std::string_view> fields;
   while (!tail.empty()) {
     const std::size_t end = tail.find_last_of('\n');
@@ -232,7 +226,7 @@ int EventTextReader::guessUnit(double first, double last,
   const double frames_ns =
       frames.size() > 1 ? static_cast<double>(frames.back() - frames.front()) : 0.0;
   if (!(last > first) || frames_ns <= 0.0) {
-    throw RecordingError(path_ +
+    throw RecordingError(files_.pathOf(name_) +
                          ": the unit of time is not clear; name it in the first line, e.g. "
                          "\"# t_us x y p\" (_s, _ms, _us, _ns)");
   }
@@ -296,6 +290,10 @@ bool EventTextReader::next(Event& event) {
     event.on = numbers[kPolarity]->mantissa > 0;
     return true;
   }
+  if (!ended_ && !lines_.fault().empty()) {
+    damage_.push_back({lines_.position(), "of " + name_ + ": " + lines_.fault()});
+  }
+  ended_ = true;
   return false;
 }
 

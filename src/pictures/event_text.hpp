@@ -14,6 +14,7 @@
 #include "fast_edi/base/types.hpp"
 #include "fast_edi/recording/recording.hpp"
 #include "pictures/text_table.hpp"
+#include "recording/file_set.hpp"
 
 namespace fast_edi {
 
@@ -24,8 +25,8 @@ struct EventTextLayout {
   int origin = 0;                           ///< of coordinates: 0 or 1
 };
 
-/// A file of events among \p folder's, or empty.
-std::string eventTextOf(const std::string& folder);
+/// The file of events among \p files, or empty.
+std::string eventTextOf(const FileSet& files);
 
 /// Reads the events of a text file one after the other.
 ///
@@ -36,9 +37,11 @@ std::string eventTextOf(const std::string& folder);
 /// else the one by which events last as long as the frames.
 class EventTextReader {
  public:
+  /// \param files must outlive this
+  /// \param name of the file of events
   /// \param frames when frames were taken [ns], in order
   /// \throws RecordingError when the file cannot be opened, or its layout is not clear
-  EventTextReader(const std::string& path, SensorSize size,
+  EventTextReader(const FileSet& files, const std::string& name, SensorSize size,
                   const std::vector<std::int64_t>& frames);
 
   /// The next event on the sensor; false at the end.
@@ -56,7 +59,7 @@ class EventTextReader {
   std::optional<double> lastTime() const;
   void note(std::string_view line, const std::string& expected);
 
-  const std::string path_;
+  const FileSet& files_;
   const std::string name_;
   const SensorSize size_;
   LineReader lines_;
@@ -64,6 +67,7 @@ class EventTextReader {
   std::vector<std::string_view> fields_;
   std::vector<RecordingDamage> damage_;
   std::uint64_t bad_lines_ = 0;
+  bool ended_ = false;
 };
 
 }  // namespace fast_edi

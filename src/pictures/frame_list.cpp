@@ -5,9 +5,9 @@
 #include <cctype>
 #include <filesystem>
 #include <initializer_list>
+#include <memory>
 #include <utility>
 
-#include "fast_edi/exposure/stamp_limits.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "pictures/text_table.hpp"
 #include "recording/damage_notes.hpp"
@@ -20,13 +20,16 @@ namespace fs = std::filesystem;
 /// Frames come no faster; 1000 times as slow is the next unit.
 constexpr double kLeastPeriod_ns = 2e6;
 
+/// Of a list, which is kept.
+constexpr std::uint64_t kMaxListBytes = std::uint64_t{64} << 20;
+
 const char* const kExposureStarts = "Exposure_start.txt";
 const char* const kExposureEnds = "Exposure_end.txt";
 const char* const kBlurryPictures = "Blur";
 
 /// Times as a list holds them, before their unit is known.
 struct Row {
-  std::string path;
+  std::string name;  ///< of the picture
   std::uint64_t offset = 0;
   std::optional<Decimal> stamp, start, end;
 };
@@ -39,19 +42,27 @@ struct Columns {
   std::optional<int> unit;
 };
 
-std::string firstOf(const std::string& folder, std::initializer_list<const char*> names) {
+std::string firstOf(const FileSet& files, std::initializer_list<const char*> names) {
   for (const char* name : names) {
-    std::error_code ignored;
-    const fs::path path = fs::path(folder) / name;
-    if (fs::is_regular_file(path, ignored)) {
-      return path.string();
+    if (files.has(name)) {
+      return name;
     }
   }
   return {};
 }
 
-std::string listOf(const std::string& folder) {
-  return firstOf(folder, {"frames.csv", "images.csv", "images.txt", "frames.txt"});
+std::string listOf(const FileSet& files) {
+  return firstOf(files, {"frames.csv", "images.csv", "images.txt", "frames.txt"});
+}
+
+/// \throws RecordingError also for a list that is too long to be kept
+LineReader openList(const FileSet& files, const std::string& name) {
+  std::unique_ptr<ByteStream> list = files.open(name);
+  if (list->size() > kMaxListBytes) {
+    throw RecordingError(files.pathOf(name) + ": " + std::to_string(list->size()) +
+                         " bytes, expected a list of at most " + std::to_string(kMaxListBytes));
+  }
+  return LineReader(std::move(list));
 }
 
 bool isOneOf(const std::string& name, std::initializer_list<const char*> names) {
@@ -121,10 +132,10 @@ bool comesBefore(const std::string& a, const std::string& b) {
 
 class ListReader {
  public:
-  explicit ListReader(std::string folder) : folder_(std::move(folder)) {}
+  explicit ListReader(const FileSet& files) : files_(files) {}
 
   FrameList read() {
-    const std::string list = listOf(folder_);
+    const std::string list = listOf(files_);
     if (list.empty()) {
       readExposures();
     } else {
@@ -132,14 +143,16 @@ class ListReader {
     }
     FrameList result;
     if (rows_.empty()) {
-      throw RecordingError(folder_ + ": no frame is listed, expected pictures and their times");
+      throw RecordingError(files_.pathOf("") +
+                           ": no frame is listed, expected pictures and their times");
     }
     const int unit = unit_ ? *unit_ : guessUnit();
     for (const Row& row : rows_) {
       addFrame(row, unit, result);
     }
-    std::stable_sort(result.frames.begin(), result.frames.end(),
-                     [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });
+    std::stable_sort(result.frames.begin(), result.frames.end(), [](const auto& a, const auto& b) {
+      return a.time.stamp_ns < b.time.stamp_ns;
+    });
     result.damage = std::move(damage_);
     return result;
   }
@@ -147,9 +160,8 @@ class ListReader {
  private:
   void note(std::uint64_t offset, const std::string& what) { noteDamage(damage_, {offset, what}); }
 
-  void readList(const std::string& path) {
-    const std::string name = fs::path(path).filename().string();
-    LineReader lines(path);
+  void readList(const std::string& name) {
+    LineReader lines = openList(files_, name);
     std::optional<Columns> columns;
     std::vector<std::string_view> fields;
     while (const auto line = lines.next()) {
@@ -174,14 +186,21 @@ class ListReader {
         }
         columns = unnamedColumns(fields);
         if (!isSound(*columns)) {
-          throw RecordingError(path + ", line " + std::to_string(lines.number()) + ": found \"" +
-                               std::string(text.substr(0, 80)) +
+          throw RecordingError(files_.pathOf(name) + ", line " + std::to_string(lines.number()) +
+                               ": found \"" + std::string(text.substr(0, 80)) +
                                "\", expected a time and a file, or the names of the columns");
         }
       }
       if (!comment) {
         addRow(*columns, fields, *line, name, lines);
       }
+    }
+    noteEnd(lines, name);
+  }
+
+  void noteEnd(const LineReader& lines, const std::string& name) {
+    if (!lines.fault().empty()) {
+      note(lines.position(), "of " + name + ": " + lines.fault());
     }
   }
 
@@ -192,7 +211,7 @@ class ListReader {
     };
     Row row;
     row.offset = lines.offset();
-    row.path = (fs::path(folder_) / std::string(field(columns.file))).string();
+    row.name = std::string(field(columns.file));
     row.stamp = parseDecimal(field(columns.stamp));
     row.start = parseDecimal(field(columns.start));
     row.end = parseDecimal(field(columns.end));
@@ -205,12 +224,7 @@ class ListReader {
   }
 
   void readExposures() {
-    std::vector<std::string> pictures;
-    std::error_code error;
-    for (const fs::directory_entry& entry :
-         fs::directory_iterator(fs::path(folder_) / kBlurryPictures, error)) {
-      pictures.push_back(entry.path().string());
-    }
+    std::vector<std::string> pictures = files_.list(kBlurryPictures);
     std::sort(pictures.begin(), pictures.end(), comesBefore);
     const std::vector<Row> starts = readTimes(kExposureStarts);
     const std::vector<Row> ends = readTimes(kExposureEnds);
@@ -228,7 +242,7 @@ class ListReader {
   }
 
   std::vector<Row> readTimes(const char* name) {
-    LineReader lines((fs::path(folder_) / name).string());
+    LineReader lines = openList(files_, name);
     std::vector<Row> rows;
     std::vector<std::string_view> fields;
     while (const auto line = lines.next()) {
@@ -240,12 +254,13 @@ class ListReader {
       row.offset = lines.offset();
       row.start = parseDecimal(fields.back());
       if (!row.start) {
-        throw RecordingError((fs::path(folder_) / name).string() + ", line " +
-                             std::to_string(lines.number()) + ": found \"" +
-                             std::string(line->substr(0, 80)) + "\", expected a time");
+        throw RecordingError(files_.pathOf(name) + ", line " + std::to_string(lines.number()) +
+                             ": found \"" + std::string(line->substr(0, 80)) +
+                             "\", expected a time");
       }
       rows.push_back(std::move(row));
     }
+    noteEnd(lines, name);
     return rows;
   }
 
@@ -270,7 +285,7 @@ class ListReader {
         scale *= 1000.0;
       }
     }
-    throw RecordingError(folder_ +
+    throw RecordingError(files_.pathOf("") +
                          ": the unit of the frames' times is not clear; name it in a first line of "
                          "the list, e.g. \"stamp_us file\" (_s, _ms, _us, _ns)");
   }
@@ -280,30 +295,21 @@ class ListReader {
   }
 
   void addFrame(const Row& row, int unit, FrameList& result) {
-    ListedFrame frame;
-    frame.path = row.path;
-    const auto time = [unit](const std::optional<Decimal>& decimal) {
-      const std::optional<std::int64_t> t_ns = decimal ? decimal->scaled(unit) : std::nullopt;
-      return t_ns && isStamp(*t_ns) ? t_ns : std::nullopt;
+    const auto scaled = [unit](const std::optional<Decimal>& decimal) {
+      return decimal ? decimal->scaled(unit) : std::nullopt;
     };
-    const std::optional<std::int64_t> start = time(row.start);
-    const std::optional<std::int64_t> end = time(row.end);
-    const std::optional<std::int64_t> stamp = time(row.stamp);
-    if (start && end && *end > *start) {
-      frame.exposure = ExposureInterval{*start, *end};
-      frame.stamp_ns = frame.exposure->at(ExposureInstant::kMid);
-    } else if (stamp) {
-      frame.stamp_ns = *stamp;
-    } else {
-      note(row.offset, "of the frame " + fs::path(row.path).filename().string() +
+    const std::optional<FrameTime> time =
+        frameTimeOf(scaled(row.stamp), scaled(row.start), scaled(row.end));
+    if (!time) {
+      note(row.offset, "of the frame " + fs::path(row.name).filename().string() +
                            ": no usable time, expected 0 to 2^32 s and an exposure that ends after "
                            "its start");
       return;
     }
-    result.frames.push_back(std::move(frame));
+    result.frames.push_back({row.name, *time});
   }
 
-  const std::string folder_;
+  const FileSet& files_;
   std::vector<Row> rows_;
   std::optional<int> unit_;
   std::vector<RecordingDamage> damage_;
@@ -311,13 +317,12 @@ class ListReader {
 
 }  // namespace
 
-bool hasFrameList(const std::string& folder) {
-  return !listOf(folder).empty() ||
-         (!firstOf(folder, {kExposureStarts}).empty() && !firstOf(folder, {kExposureEnds}).empty());
+bool hasFrameList(const FileSet& files) {
+  return !listOf(files).empty() || (files.has(kExposureStarts) && files.has(kExposureEnds));
 }
 
-FrameList readFrameList(const std::string& folder) {
-  return ListReader(folder).read();
+FrameList readFrameList(const FileSet& files) {
+  return ListReader(files).read();
 }
 
 }  // namespace fast_edi

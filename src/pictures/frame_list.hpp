@@ -1,21 +1,19 @@
 /// \file
-/// Which pictures a folder holds, and when they were taken.
+/// Which pictures a folder or archive holds, and when they were taken.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "fast_edi/base/types.hpp"
 #include "fast_edi/recording/recording.hpp"
+#include "recording/file_set.hpp"
+#include "recording/merged_recording.hpp"
 
 namespace fast_edi {
 
 struct ListedFrame {
-  std::string path;
-  std::optional<ExposureInterval> exposure;
-  std::int64_t stamp_ns = 0;  ///< the middle of the exposure where that is known
+  std::string name;  ///< among the files
+  FrameTime time;
 };
 
 struct FrameList {
@@ -23,8 +21,8 @@ struct FrameList {
   std::vector<RecordingDamage> damage;  ///< lines that cannot be read
 };
 
-/// Whether \p folder has one of the lists that readFrameList() reads.
-bool hasFrameList(const std::string& folder);
+/// Whether \p files have one of the lists that readFrameList() reads.
+bool hasFrameList(const FileSet& files);
 
 /// One of
 /// - frames.csv or images.csv, with the names of its columns in the first line: a file, and a stamp
@@ -35,7 +33,8 @@ bool hasFrameList(const std::string& folder);
 ///
 /// The unit of time is the one in the name of the column ("stamp_ns"), else that in which
 /// frames come 2 ms to 2 s apart.
+/// A list has at most 64 MiB.
 /// \throws RecordingError when there is no list, no frame in it, or no unit of time
-FrameList readFrameList(const std::string& folder);
+FrameList readFrameList(const FileSet& files);
 
 }  // namespace fast_edi

@@ -161,4 +161,19 @@ bool convertPicture(Picture& picture, const std::string& encoding, bool stored_r
   return true;
 }
 
+std::string decodeCompressed(const CompressedPicture& compressed, Picture& picture) {
+  std::string fault;
+  std::optional<Picture> decoded = decodePicture(compressed.data, compressed.bytes, fault);
+  if (!decoded) {
+    return fault;
+  }
+  const std::size_t end = compressed.format.find(';');
+  if (end != std::string_view::npos) {
+    const bool stored_rgb = compressed.format.find("compressed rgb", end) != std::string_view::npos;
+    convertPicture(*decoded, std::string(compressed.format.substr(0, end)), stored_rgb);
+  }
+  picture = std::move(*decoded);
+  return {};
+}
+
 }  // namespace fast_edi

@@ -10,22 +10,18 @@
 #include <vector>
 
 #include "fast_edi/base/types.hpp"
+#include "fast_edi/recording/picture_decoder.hpp"
 
 namespace fast_edi {
 
 /// Larger ones are refused: a small file may claim gigabytes.
 constexpr std::size_t kMaxPicturePixels = std::size_t{1} << 24;
 
-struct Picture {
-  SensorSize size;
-  std::string encoding;              ///< mono8, mono16, bgr8, bgr16, bgra8 or bgra16
-  std::vector<std::uint8_t> pixels;  ///< rows without padding
-};
-
 /// Width and height by the header of a PNG or JPEG; nothing when it is neither, or cut.
 std::optional<SensorSize> pictureSize(const std::uint8_t* data, std::size_t size);
 
 /// \param fault what was found and expected, when there is no picture
+/// \return it as mono8, mono16, bgr8, bgr16, bgra8 or bgra16
 std::optional<Picture> decodePicture(const std::uint8_t* data, std::size_t size,
                                      std::string& fault);
 
@@ -34,5 +30,9 @@ std::optional<Picture> decodePicture(const std::uint8_t* data, std::size_t size,
 /// \param stored_rgb the channels were stored as red, green, blue
 /// \return false when the picture has other channels than \p encoding: it is unchanged
 bool convertPicture(Picture& picture, const std::string& encoding, bool stored_rgb);
+
+/// Decodes a picture and gives it the encoding that was compressed, as far as its format tells; one
+/// with other channels than that keeps those that it has. A PictureDecoder.
+std::string decodeCompressed(const CompressedPicture& compressed, Picture& picture);
 
 }  // namespace fast_edi

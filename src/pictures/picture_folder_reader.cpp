@@ -1,38 +1,38 @@
 #include "fast_edi/pictures/picture_folder_reader.hpp"
 
-#include <algorithm>
-#include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
-#include "fast_edi/recording/byte_source.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "pictures/event_text.hpp"
 #include "pictures/frame_list.hpp"
 #include "pictures/picture.hpp"
+#include "recording/file_set.hpp"
+#include "recording/merged_recording.hpp"
+#include "zip/zip_archive.hpp"
 
 namespace fast_edi {
 namespace {
 
-/// An item spans no more.
-constexpr std::int64_t kMaxItem_ns = 10 * kNanosecondsPerMillisecond;
-// Streams, in this order.
-constexpr std::size_t kFrames = 0;
-constexpr std::size_t kEvents = 1;
-constexpr char kCamera[] = "DAVIS";
+/// Events that are read at once.
+constexpr std::size_t kBlockEvents = 20'000;
 /// Of a picture's file; kMaxPicturePixels with four channels of 16 bits.
 constexpr std::uint64_t kMaxPictureBytes = kMaxPicturePixels * 8;
 
-std::optional<Picture> readPicture(const std::string& path, std::string& fault) {
+std::optional<Picture> readPicture(const FileSet& files, const std::string& name,
+                                   std::string& fault) {
   try {
-    const FileSource file(path);
-    if (file.size() > kMaxPictureBytes) {
-      fault = "a file of " + std::to_string(file.size()) + " bytes, expected a picture";
+    const std::unique_ptr<ByteStream> file = files.open(name);
+    if (file->size() > kMaxPictureBytes) {
+      fault = "a file of " + std::to_string(file->size()) + " bytes, expected a picture";
       return std::nullopt;
     }
-    std::vector<std::uint8_t> bytes;
-    if (file.read(0, static_cast<std::size_t>(file.size()), bytes) == nullptr) {
-      fault = "it cannot be read";
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(file->size()));
+    const std::size_t found = file->read(bytes.data(), bytes.size());
+    if (found < bytes.size()) {
+      fault = file->fault();
       return std::nullopt;
     }
     return decodePicture(bytes.data(), bytes.size(), fault);
@@ -42,125 +42,94 @@ std::optional<Picture> readPicture(const std::string& path, std::string& fault) 
   }
 }
 
-std::int64_t endOf(const ListedFrame& frame) {
-  return frame.exposure ? frame.exposure->end_ns : frame.stamp_ns;
-}
-
-class PictureFolderReader : public Recording {
+class PictureReader : public MergedRecording {
  public:
-  explicit PictureFolderReader(const std::string& path) {
-    FrameList list = readFrameList(path);
+  PictureReader(std::unique_ptr<FileSet> files, std::string format)
+      : files_(std::move(files)), format_(std::move(format)) {
+    FrameList list = readFrameList(*files_);
     frames_ = std::move(list.frames);
-    damage_ = std::move(list.damage);
+    for (RecordingDamage& place : list.damage) {
+      note(std::move(place));
+    }
     std::string fault;
     std::optional<Picture> first;
     for (std::size_t i = 0; i < frames_.size() && !first; ++i) {
-      first = readPicture(frames_[i].path, fault);
+      first = readPicture(*files_, frames_[i].name, fault);
     }
     if (!first) {
-      throw RecordingError(frames_.empty() ? path + ": no frame has a usable time"
-                                           : frames_.front().path + ": " + fault);
+      throw RecordingError(frames_.empty() ? files_->pathOf("") + ": no frame has a usable time"
+                                           : files_->pathOf(frames_.front().name) + ": " + fault);
     }
-    streams_.push_back({StreamKind::kFrames, "frames", kCamera, first->size});
-    const std::string events = eventTextOf(path);
+    std::vector<FrameTime> times;
+    std::vector<std::int64_t> stamps;
+    times.reserve(frames_.size());
+    stamps.reserve(frames_.size());
+    for (const ListedFrame& frame : frames_) {
+      times.push_back(frame.time);
+      stamps.push_back(frame.time.stamp_ns);
+    }
+    addFrames(std::move(times), first->size);
+    const std::string events = eventTextOf(*files_);
     if (!events.empty()) {
-      std::vector<std::int64_t> times;
-      times.reserve(frames_.size());
-      for (const ListedFrame& frame : frames_) {
-        times.push_back(frame.stamp_ns);
-      }
-      events_.emplace(events, first->size, times);
-      streams_.push_back({StreamKind::kEvents, "events", kCamera, first->size});
-      advance();
+      events_.emplace(*files_, events, first->size, stamps);
+      addEvents(first->size);
     }
   }
 
-  bool next(RecordingItem& item) override {
-    while (frame_ < frames_.size() || waiting_) {
-      const bool frame_is_due =
-          frame_ < frames_.size() && (!waiting_ || waiting_->t_ns >= endOf(frames_[frame_]));
-      if (frame_is_due ? giveFrame(item) : giveEvents(item)) {
-        return true;
-      }
-    }
-    return false;
+  std::string format() const override { return format_; }
+  std::uint64_t position() const override {
+    return framesRead() + (events_ ? events_->position() : 0);
   }
-
-  std::string format() const override { return "pictures and text"; }
-  const std::vector<RecordedStream>& streams() const override { return streams_; }
-  const std::vector<RecordingDamage>& damage() const override { return damage_; }
-  std::uint64_t position() const override { return frame_ + (events_ ? events_->position() : 0); }
   std::uint64_t length() const override { return frames_.size() + fileSize(); }
   std::uint64_t fileSize() const override { return events_ ? events_->size() : 0; }
-  bool knowsExposures() const override {
-    return std::all_of(frames_.begin(), frames_.end(),
-                       [](const ListedFrame& frame) { return frame.exposure.has_value(); });
-  }
 
  private:
-  void advance() {
-    Event event;
-    waiting_ = events_->next(event) ? std::optional(event) : std::nullopt;
-    for (RecordingDamage& place : events_->takeDamage()) {
-      damage_.push_back(std::move(place));
-    }
-  }
-
-  /// \return false for a picture that cannot be read
-  bool giveFrame(RecordingItem& item) {
-    const ListedFrame& listed = frames_[frame_++];
+  bool readFrame(std::size_t index, RecordedFrame& frame) override {
+    const ListedFrame& listed = frames_[index];
     std::string fault;
-    picture_ = readPicture(listed.path, fault);
+    picture_ = readPicture(*files_, listed.name, fault);
     if (!picture_) {
-      damage_.push_back({0, "of " + listed.path + ": " + fault});
+      note({0, "of " + files_->pathOf(listed.name) + ": " + fault});
       return false;
     }
-    RecordedFrame frame;
-    frame.exposure = listed.exposure;
-    frame.stamp_ns = listed.stamp_ns;
     frame.size = picture_->size;
     frame.encoding = picture_->encoding;
     frame.pixels = picture_->pixels.data();
     frame.bytes = picture_->pixels.size();
-    record_ns_ = std::max(record_ns_, endOf(listed));
-    item.stream = kFrames;
-    item.record_ns = record_ns_;
-    item.content = frame;
     return true;
   }
 
-  bool giveEvents(RecordingItem& item) {
-    const std::int64_t frame_ns =
-        frame_ < frames_.size() ? endOf(frames_[frame_]) : std::numeric_limits<std::int64_t>::max();
-    const std::int64_t first_ns = waiting_->t_ns;
-    given_.clear();
-    while (waiting_ && waiting_->t_ns < frame_ns && waiting_->t_ns < first_ns + kMaxItem_ns &&
-           given_.size() < kMaxItemEvents) {
-      given_.push_back(*waiting_);
-      record_ns_ = std::max(record_ns_, waiting_->t_ns);
-      advance();
+  void readEvents(EventBlock& block) override {
+    Event event;
+    while (block.events.size() < kBlockEvents && events_->next(event)) {
+      block.events.push_back(event);
     }
-    item.stream = kEvents;
-    item.record_ns = record_ns_;
-    item.content = RecordedEvents{given_.data(), given_.size()};
-    return true;
+    for (RecordingDamage& place : events_->takeDamage()) {
+      note(std::move(place));
+    }
   }
 
+  const std::unique_ptr<FileSet> files_;
+  const std::string format_;
   std::vector<ListedFrame> frames_;
-  std::vector<RecordingDamage> damage_;
-  std::vector<RecordedStream> streams_;
   std::optional<EventTextReader> events_;
-  std::optional<Event> waiting_;  ///< the next one
-  std::vector<Event> given_;
   std::optional<Picture> picture_;
-  std::size_t frame_ = 0;
-  std::int64_t record_ns_ = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<Recording> openPictureFolder(const std::string& path) {
-  return std::make_unique<PictureFolderReader>(path);
+  return std::make_unique<PictureReader>(openFolder(path), "pictures and text");
+}
+
+std::unique_ptr<Recording> openPictureArchive(const std::string& path) {
+  std::unique_ptr<FileSet> files = openZip(path);
+  if (!hasFrameList(*files)) {
+    throw RecordingError(path +
+                         " is a zip archive, but no recording: expected images.txt, frames.csv or "
+                         "Exposure_start.txt in it");
+  }
+  return std::make_unique<PictureReader>(std::move(files), "pictures and text, zip");
 }
 
 }  // namespace fast_edi

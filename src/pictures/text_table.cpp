@@ -30,11 +30,8 @@ bool isDigit(char c) {
 bool LineReader::readBlock() {
   block_offset_ += block_bytes_;
   at_ = 0;
-  const std::uint64_t left = file_.size() - block_offset_;
-  block_bytes_ = static_cast<std::size_t>(std::min<std::uint64_t>(left, kBlockBytes));
-  if (block_bytes_ > 0 && file_.read(block_offset_, block_bytes_, block_) == nullptr) {
-    block_bytes_ = 0;  // it became shorter
-  }
+  block_.resize(kBlockBytes);
+  block_bytes_ = text_->read(block_.data(), block_.size());
   return block_bytes_ > 0;
 }
 

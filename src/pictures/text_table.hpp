@@ -4,41 +4,44 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "fast_edi/recording/byte_source.hpp"
+#include "recording/file_set.hpp"
 
 namespace fast_edi {
 
-/// Lines of a file, read block by block.
+/// Lines of a text, read block by block.
 class LineReader {
  public:
   /// Longer lines come cut to this [bytes].
   static constexpr std::size_t kMaxLineBytes = 4096;
 
-  /// \throws RecordingError when \p path cannot be opened
-  explicit LineReader(const std::string& path) : file_(path) {}
+  explicit LineReader(std::unique_ptr<ByteStream> text) : text_(std::move(text)) {}
 
-  /// The next line, without its end; nothing at the end of the file. Valid until the next call.
+  /// The next line, without its end; nothing at the end of the text. Valid until the next call.
   std::optional<std::string_view> next();
   /// Number of the line that next() returned last, from 1.
   std::uint64_t number() const { return number_; }
   /// Where that line begins [bytes].
   std::uint64_t offset() const { return line_offset_; }
   std::uint64_t position() const { return block_offset_ + at_; }
-  std::uint64_t size() const { return file_.size(); }
+  std::uint64_t size() const { return text_->size(); }
+  /// Why the text ended early; empty if it did not.
+  std::string fault() const { return text_->fault(); }
 
  private:
   bool readBlock();
 
-  FileSource file_;
+  std::unique_ptr<ByteStream> text_;
   std::vector<std::uint8_t> block_;
   std::size_t block_bytes_ = 0;
   std::size_t at_ = 0;              ///< in the block
-  std::uint64_t block_offset_ = 0;  ///< in the file
+  std::uint64_t block_offset_ = 0;  ///< in the text
   std::uint64_t line_offset_ = 0;
   std::uint64_t number_ = 0;
   std::string cut_;  ///< a line that lies in two blocks

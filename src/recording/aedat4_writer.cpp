@@ -4,22 +4,20 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <optional>
-#include <system_error>
 
 #include "fast_edi/recording/aedat4_reader.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "recording/aedat4_header.hpp"
 #include "recording/flatbuffer_writer.hpp"
 #include "recording/imu_units.hpp"
+#include "recording/output_path.hpp"
 #include "recording/packet_compression.hpp"
 
 namespace fast_edi {
 namespace {
 
-namespace fs = std::filesystem;
 using Field = FlatBufferWriter::Field;
 using Reference = FlatBufferWriter::Reference;
 
@@ -178,22 +176,12 @@ class Aedat4Writer::Impl {
  public:
   Impl(const std::string& path, const std::vector<RecordedStream>& streams,
        Aedat4Compression compression, bool overwrite)
-      : path_(path),
-        active_path_(path + ".active"),
+      : path_(path, overwrite),
         streams_(streams),
         compression_(compressionOf(compression)),
         pending_samples_(streams.size()) {
-    for (const std::string& output : {path_, active_path_}) {
-      if (fs::is_directory(output)) {
-        throw RecordingError("cannot write " + output + ": it is a directory");
-      }
-      if (!overwrite && fs::exists(output)) {
-        throw RecordingError("cannot write " + output +
-                             ": it exists already (--force replaces it)");
-      }
-    }
     errno = 0;
-    file_.open(active_path_, std::ios::binary | std::ios::trunc);
+    file_.open(path_.active(), std::ios::binary | std::ios::trunc);
     requireWritten();
     writeHeader(static_cast<std::int32_t>(compression));
   }
@@ -225,18 +213,13 @@ class Aedat4Writer::Impl {
     errno = 0;
     file_.close();
     requireWritten();
-    std::error_code error;
-    fs::rename(active_path_, path_, error);
-    if (error) {
-      throw RecordingError("cannot rename " + active_path_ + " to " + path_ + ": " +
-                           error.message());
-    }
+    path_.complete();
   }
 
  private:
   void requireWritten() const {
     if (!file_) {
-      throw RecordingError("cannot write " + active_path_ + ": " +
+      throw RecordingError("cannot write " + path_.active() + ": " +
                            (errno != 0 ? std::strerror(errno) : "unknown error"));
     }
   }
@@ -402,8 +385,7 @@ class Aedat4Writer::Impl {
     put(&place, sizeof(place));
   }
 
-  const std::string path_;
-  const std::string active_path_;
+  const OutputPath path_;
   const std::vector<RecordedStream> streams_;
   const Compression compression_;
   std::ofstream file_;

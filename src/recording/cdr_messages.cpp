@@ -42,6 +42,15 @@ std::int64_t readImage(CdrReader& cdr, RosImage& image) {
   return stamp_ns;
 }
 
+std::int64_t readCompressedImage(CdrReader& cdr, CompressedPicture& picture) {
+  const std::int64_t stamp_ns = readHeader(cdr);
+  picture.format = cdr.text();
+  const CdrBytes data = cdr.bytes();
+  picture.data = data.data;
+  picture.bytes = data.size;
+  return stamp_ns;
+}
+
 std::string readImu(CdrReader& cdr, RecordedImu& sample) {
   sample.t_ns = readHeader(cdr);
   cdr.skipDoubles(kQuaternion + kCovariance);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "fast_edi/recording/picture_decoder.hpp"
 #include "fast_edi/recording/recording.hpp"
 #include "recording/cdr_reader.hpp"
 #include "recording/ros_image.hpp"
@@ -22,6 +23,10 @@ SensorSize sizeOf(std::uint32_t width, std::uint32_t height);
 /// sensor_msgs/Image; the pixels stay where they are.
 /// \return its stamp [ns]
 std::int64_t readImage(CdrReader& cdr, RosImage& image);
+
+/// sensor_msgs/CompressedImage; the picture stays where it is.
+/// \return its stamp [ns]
+std::int64_t readCompressedImage(CdrReader& cdr, CompressedPicture& picture);
 
 /// sensor_msgs/Imu.
 /// \return what is wrong; empty if nothing is

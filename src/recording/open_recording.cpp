@@ -1,5 +1,6 @@
 #include "fast_edi/recording/open_recording.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <filesystem>
@@ -23,10 +24,19 @@ constexpr std::string_view kAedat3Magic = "#!AER-DAT3.1";
 constexpr std::array<std::string_view, 4> kRosbag2Magics = {
     "SQLite format 3", "\x89MCAP0\r\n", "\x28\xB5\x2F\xFD", "rosbag2_bagfile_information:"};
 
-bool beginsWith(const FileSource& file, std::string_view magic) {
+constexpr std::string_view kZipMagic = "PK\x03\x04";
+constexpr std::string_view kHdf5Magic = "\x89HDF\r\n\x1a\n";
+/// Where it may begin: behind a block that is a user's.
+constexpr std::array<std::uint64_t, 4> kHdf5Offsets = {0, 512, 1024, 2048};
+
+bool hasAt(const FileSource& file, std::uint64_t offset, std::string_view magic) {
   std::vector<std::uint8_t> scratch;
-  const std::uint8_t* bytes = file.read(0, magic.size(), scratch);
+  const std::uint8_t* bytes = file.read(offset, magic.size(), scratch);
   return bytes != nullptr && std::memcmp(bytes, magic.data(), magic.size()) == 0;
+}
+
+bool beginsWith(const FileSource& file, std::string_view magic) {
+  return hasAt(file, 0, magic);
 }
 
 }  // namespace
@@ -51,7 +61,16 @@ RecordingFormat formatOf(const std::string& path) {
       return RecordingFormat::kRosbag2;
     }
   }
-  return beginsWith(file, kAedat4Magic) ? RecordingFormat::kAedat4 : RecordingFormat::kUnknown;
+  if (beginsWith(file, kAedat4Magic)) {
+    return RecordingFormat::kAedat4;
+  }
+  if (beginsWith(file, kZipMagic)) {
+    return RecordingFormat::kZip;
+  }
+  const bool hdf5 =
+      std::any_of(kHdf5Offsets.begin(), kHdf5Offsets.end(),
+                  [&file](std::uint64_t offset) { return hasAt(file, offset, kHdf5Magic); });
+  return hdf5 ? RecordingFormat::kHdf5 : RecordingFormat::kUnknown;
 }
 
 std::unique_ptr<Recording> openRecording(const std::string& path) {
@@ -64,6 +83,8 @@ std::unique_ptr<Recording> openRecording(const std::string& path) {
       return openAedat3(path);
     case RecordingFormat::kRosbag2:
       return openRosbag2(path);
+    case RecordingFormat::kHdf5:
+    case RecordingFormat::kZip:
     case RecordingFormat::kRosbag:
     case RecordingFormat::kUnknown:
       break;

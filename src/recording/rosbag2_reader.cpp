@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -12,24 +11,23 @@
 #include "recording/event_packet_decoder.hpp"
 #include "recording/rosbag2_frames.hpp"
 #include "recording/rosbag2_messages.hpp"
+#include "recording/rosbag2_sources.hpp"
 #include "recording/rosbag2_topics.hpp"
 
 namespace fast_edi {
 namespace {
 
-constexpr char kFormatOfMessages[] = "cdr";
-/// Messages that are looked at for the size of the sensor.
-constexpr int kMessagesLookedAt = 1000;
-
 class Rosbag2Reader : public Recording {
  public:
-  explicit Rosbag2Reader(const std::string& path)
-      : messages_(path),
+  Rosbag2Reader(const std::string& path, PictureDecoder decode)
+      : decode_(std::move(decode)),
+        messages_(path),
         streams_(streamsOf(messages_.topics())),
         packets_(streams_.sources.size()),
-        frames_(streams_) {
-    findSizes();
-    sources_.clear();
+        frames_(streams_),
+        sources_(messages_, streams_, decode_ != nullptr) {
+    findSizes(messages_, decode_, sources_, streams_);
+    sources_ = Rosbag2Sources(messages_, streams_, decode_ != nullptr);
     messages_.rewind();
   }
 
@@ -63,65 +61,8 @@ class Rosbag2Reader : public Recording {
     std::uint64_t lost = 0;                 ///< before the next events
   };
 
-  /// What the first message of events or frames says; of events that have none, the frames'.
-  void findSizes() {
-    const auto is_missing = [this] {
-      return std::any_of(streams_.streams.begin(), streams_.streams.end(), [](const auto& stream) {
-        return (stream.kind == StreamKind::kEvents || stream.kind == StreamKind::kFrames) &&
-               stream.size.pixelCount() == 0;
-      });
-    };
-    Rosbag2Message message;
-    for (int i = 0; i < kMessagesLookedAt && is_missing() && messages_.peek(message); ++i) {
-      const std::optional<std::size_t> source = sourceOf(message);
-      if (!source || !messages_.uncompress(message)) {
-        continue;
-      }
-      RecordedStream& stream = streams_.streams[streams_.sources[*source].stream];
-      const bool has_size =
-          stream.kind == StreamKind::kEvents || stream.kind == StreamKind::kFrames;
-      if (has_size && streams_.sources[*source].kind != Rosbag2Kind::kExposure &&
-          stream.size.pixelCount() == 0) {
-        CdrReader cdr(message.data, message.size);
-        readHeader(cdr);
-        const auto height = cdr.number<std::uint32_t>();
-        const auto width = cdr.number<std::uint32_t>();
-        stream.size = sizeOf(width, height);
-      }
-    }
-    for (RecordedStream& stream : streams_.streams) {
-      const auto frames = std::find_if(
-          streams_.streams.begin(), streams_.streams.end(), [&](const RecordedStream& other) {
-            return other.kind == StreamKind::kFrames && other.camera == stream.camera;
-          });
-      if (stream.kind == StreamKind::kEvents && stream.size.pixelCount() == 0 &&
-          frames != streams_.streams.end()) {
-        stream.size = frames->size;
-      }
-    }
-  }
-
-  std::optional<std::size_t> sourceOf(const Rosbag2Message& message) {
-    const auto known = sources_.find({messages_.file(), message.topic});
-    if (known != sources_.end()) {
-      return known->second;
-    }
-    const Rosbag2Topic& topic = messages_.topicOf(message);
-    std::optional<std::size_t> source = streams_.find(topic);
-    if (source && topic.format != kFormatOfMessages) {
-      messages_.note(message,
-                     "messages in the format \"" + topic.format + "\", expected cdr: left out");
-      source.reset();
-    } else if (!source && kindOf(topic.type) && kindOf(topic.type) != Rosbag2Kind::kExposure) {
-      messages_.note(message,
-                     "a topic that neither metadata.yaml nor the files' heads tell of: left out");
-    }
-    sources_[{messages_.file(), message.topic}] = source;
-    return source;
-  }
-
   bool take(Rosbag2Message message, RecordingItem& item) {
-    const std::optional<std::size_t> source = sourceOf(message);
+    const std::optional<std::size_t> source = sources_.find(message);
     if (!source || !messages_.uncompress(message)) {
       return false;
     }
@@ -143,6 +84,8 @@ class Rosbag2Reader : public Recording {
         return false;
       case Rosbag2Kind::kImage:
         return takeImage(*source, message, cdr, item);
+      case Rosbag2Kind::kCompressedImage:
+        return takeCompressed(*source, message, cdr, item);
       case Rosbag2Kind::kImu:
         return takeWhole<RecordedImu>(message, cdr, readImu, item);
       case Rosbag2Kind::kCalibration:
@@ -266,6 +209,33 @@ class Rosbag2Reader : public Recording {
     if (!cdr.ok()) {
       return refuseCut(message);
     }
+    return addFrame(source, message, stamp_ns, image, item);
+  }
+
+  bool takeCompressed(std::size_t source, const Rosbag2Message& message, CdrReader& cdr,
+                      RecordingItem& item) {
+    CompressedPicture compressed;
+    const std::int64_t stamp_ns = readCompressedImage(cdr, compressed);
+    if (!cdr.ok()) {
+      return refuseCut(message);
+    }
+    Picture picture;
+    const std::string fault = decode_(compressed, picture);
+    if (!fault.empty()) {
+      return refuse(message, fault);
+    }
+    RosImage image;
+    image.width = static_cast<std::uint32_t>(picture.size.width);
+    image.height = static_cast<std::uint32_t>(picture.size.height);
+    image.encoding = picture.encoding;
+    image.data = picture.pixels.data();
+    image.bytes = picture.pixels.size();
+    image.step = static_cast<std::uint32_t>(image.bytes / image.height);
+    return addFrame(source, message, stamp_ns, image, item);
+  }
+
+  bool addFrame(std::size_t source, const Rosbag2Message& message, std::int64_t stamp_ns,
+                const RosImage& image, RecordingItem& item) {
     std::optional<RecordedFrame> complete;
     const std::string fault = frames_.add(source, stamp_ns, image, complete);
     return fault.empty() ? give(complete, item) : refuse(message, fault);
@@ -310,12 +280,12 @@ class Rosbag2Reader : public Recording {
     return true;
   }
 
+  const PictureDecoder decode_;  ///< may be empty
   Rosbag2Messages messages_;
   Rosbag2Streams streams_;
   std::vector<Packets> packets_;  ///< of each source
   Rosbag2Frames frames_;
-  /// By file and its number of the topic; nothing for those that are not read.
-  std::map<std::pair<std::size_t, std::size_t>, std::optional<std::size_t>> sources_;
+  Rosbag2Sources sources_;
   std::int64_t record_ns_ = 0;
 
   /// Whose events are being decoded; nothing: none.
@@ -327,8 +297,8 @@ class Rosbag2Reader : public Recording {
 
 }  // namespace
 
-std::unique_ptr<Recording> openRosbag2(const std::string& path) {
-  return std::make_unique<Rosbag2Reader>(path);
+std::unique_ptr<Recording> openRosbag2(const std::string& path, PictureDecoder decode) {
+  return std::make_unique<Rosbag2Reader>(path, std::move(decode));
 }
 
 }  // namespace fast_edi

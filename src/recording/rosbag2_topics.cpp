@@ -9,23 +9,27 @@
 namespace fast_edi {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Rosbag2Kind>, 9> kTypes = {{
+constexpr std::array<std::pair<std::string_view, Rosbag2Kind>, 10> kTypes = {{
     {"dvs_msgs/msg/EventArray", Rosbag2Kind::kEventArray},
     {"dv_ros2_msgs/msg/EventArray", Rosbag2Kind::kEventArray},
     {"dv_ros_msgs/msg/EventArray", Rosbag2Kind::kEventArray},
     {"prophesee_event_msgs/msg/EventArray", Rosbag2Kind::kEventArray},
     {"event_camera_msgs/msg/EventPacket", Rosbag2Kind::kEventPacket},
     {"sensor_msgs/msg/Image", Rosbag2Kind::kImage},
+    {"sensor_msgs/msg/CompressedImage", Rosbag2Kind::kCompressedImage},
     {"sensor_msgs/msg/Imu", Rosbag2Kind::kImu},
     {"sensor_msgs/msg/CameraInfo", Rosbag2Kind::kCalibration},
     {"std_msgs/msg/Int32", Rosbag2Kind::kExposure},
 }};
 constexpr char kExposureName[] = "exposure";
 constexpr char kFramesName[] = "image_raw";
+/// What image_transport puts behind the name of the raw topic.
+constexpr std::string_view kCompressedSuffix = "/compressed";
 
 StreamKind streamKind(Rosbag2Kind kind) {
   switch (kind) {
     case Rosbag2Kind::kImage:
+    case Rosbag2Kind::kCompressedImage:
     case Rosbag2Kind::kExposure:
       return StreamKind::kFrames;
     case Rosbag2Kind::kImu:
@@ -42,6 +46,15 @@ StreamKind streamKind(Rosbag2Kind kind) {
 /// The part behind the last slash.
 std::string baseName(const std::string& topic) {
   return topic.substr(topic.rfind('/') + 1);
+}
+
+/// That of the raw frames which were compressed; empty for a topic that has none such.
+std::string rawTopic(const std::string& compressed) {
+  const std::size_t suffix = kCompressedSuffix.size();
+  return compressed.size() > suffix &&
+                 compressed.compare(compressed.size() - suffix, suffix, kCompressedSuffix) == 0
+             ? compressed.substr(0, compressed.size() - suffix)
+             : std::string();
 }
 
 /// What stands before it, without slashes at its ends.
@@ -84,17 +97,27 @@ std::optional<std::size_t> Rosbag2Streams::find(const Rosbag2Topic& topic) const
 
 Rosbag2Streams streamsOf(const std::vector<Rosbag2Topic>& topics) {
   Rosbag2Streams result;
+  const auto is_recorded_raw = [&topics](const std::string& name) {
+    return std::any_of(topics.begin(), topics.end(), [&](const Rosbag2Topic& topic) {
+      return topic.name == name && kindOf(topic.type) == Rosbag2Kind::kImage;
+    });
+  };
   for (const Rosbag2Topic& topic : topics) {
     const std::optional<Rosbag2Kind> kind = kindOf(topic.type);
     if (!kind || *kind == Rosbag2Kind::kExposure || result.find(topic)) {
       continue;
     }
+    const bool compressed = *kind == Rosbag2Kind::kCompressedImage;
+    const std::string name = compressed ? rawTopic(topic.name) : topic.name;
+    if (compressed && (name.empty() || is_recorded_raw(name))) {
+      continue;
+    }
     RecordedStream stream;
     stream.kind = streamKind(*kind);
-    stream.camera = nameSpace(topic.name);
-    stream.name = stream.kind == StreamKind::kFrames && baseName(topic.name) == kFramesName
+    stream.camera = nameSpace(name);
+    stream.name = stream.kind == StreamKind::kFrames && baseName(name) == kFramesName
                       ? "frames"
-                      : baseName(topic.name);
+                      : baseName(name);
     result.sources.push_back({*kind, topic.name, result.streams.size()});
     result.streams.push_back(std::move(stream));
   }

@@ -13,7 +13,15 @@
 namespace fast_edi {
 
 /// What messages of a topic are.
-enum class Rosbag2Kind { kEventArray, kEventPacket, kImage, kImu, kCalibration, kExposure };
+enum class Rosbag2Kind {
+  kEventArray,
+  kEventPacket,
+  kImage,
+  kCompressedImage,
+  kImu,
+  kCalibration,
+  kExposure
+};
 
 struct Rosbag2Source {
   Rosbag2Kind kind = Rosbag2Kind::kEventArray;
@@ -33,6 +41,8 @@ struct Rosbag2Streams {
 /// Nothing for types that are not read.
 std::optional<Rosbag2Kind> kindOf(const std::string& type);
 
+/// Compressed frames are read from TOPIC/compressed where TOPIC was not recorded, too; they belong
+/// to the stream that TOPIC would be.
 Rosbag2Streams streamsOf(const std::vector<Rosbag2Topic>& topics);
 
 }  // namespace fast_edi

@@ -1,11 +1,13 @@
 /// \file
-/// `convert_recording`: a recording of any format as a bag, as AEDAT4, or its frames as pictures.
+/// `convert_recording`: a recording of any format as a bag, as AEDAT4 or HDF5, or its frames as
+/// pictures.
 
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
@@ -19,10 +21,10 @@
 #include "fast_edi/bags/open_messages.hpp"
 #include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/pictures/open_pictures.hpp"
-#include "fast_edi/recording/aedat4_writer.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "film/frame_folder.hpp"
 #include "progress_bar.hpp"
+#include "recording_output.hpp"
 
 namespace {
 
@@ -54,7 +56,7 @@ void handleSignals() {
 struct Arguments {
   std::vector<std::string> inputs;
   std::string output;
-  std::string compression = "lz4";
+  std::string compression;  ///< empty: the usual one of the format
   double array_ms = 0.0;
   fast_edi::TopicNames topics;
   bool overwrite = false;
@@ -68,13 +70,14 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
       po::value(&arguments.array_ms)->default_value(arguments.array_ms)->value_name("MS"),
       "length of a bag's event arrays, 0..1000; 0: as the recording has its packets")(
       "compression",
-      po::value(&arguments.compression)->default_value(arguments.compression)->value_name("KIND"),
-      "none, lz4, bz2 (bag alone), zstd (AEDAT4 alone)");
+      po::value(&arguments.compression)->default_value("", "lz4, of HDF5 gzip")->value_name("KIND"),
+      "none, lz4 (bag, AEDAT4), bz2 (bag), zstd (AEDAT4), gzip (HDF5)");
   tools::addForceOption(visible, arguments.overwrite);
   tools::addTopicOptions(visible, arguments.topics);
   const tools::HelpText text = {
       "Usage: convert_recording IN... OUT.bag   what davis_ros_driver would have recorded\n"
       "       convert_recording IN... OUT.aedat4 for iniVation's DV\n"
+      "       convert_recording IN... OUT.h5     HDF5, as DSEC and event_utils have it\n"
       "       convert_recording IN... FOLDER     frames as PNG, and frames.csv with their times\n\n"
       "IN is any recording that the package reads, told by its content.\n"
       "Bags have /dvs/events, /dvs/image_raw stamped in the middle of the exposure, the\n"
@@ -174,20 +177,18 @@ int finish(const Arguments& arguments, const Counts& counts,
   return damage.empty() && counts.left_out == 0 ? kDone : kInputIncomplete;
 }
 
-int toAedat4(const Arguments& arguments) {
-  const std::string& kind = arguments.compression;
-  if (kind != "none" && kind != "lz4" && kind != "zstd") {
-    throw po::error("--compression " + kind + ": expected none, lz4 or zstd for AEDAT4");
+int toRecording(const Arguments& arguments) {
+  try {
+    tools::checkCompression(arguments.output, arguments.compression);
+  } catch (const std::invalid_argument& error) {
+    throw po::error(error.what());
   }
-  const auto compression = kind == "lz4"    ? fast_edi::Aedat4Compression::kLz4
-                           : kind == "zstd" ? fast_edi::Aedat4Compression::kZstd
-                                            : fast_edi::Aedat4Compression::kNone;
   const std::unique_ptr<fast_edi::Recording> recording = openItems(arguments);
-  fast_edi::Aedat4Writer writer(arguments.output, recording->streams(), compression,
-                                arguments.overwrite);
+  const std::unique_ptr<fast_edi::RecordingWriter> writer = tools::makeRecordingWriter(
+      arguments.output, recording->streams(), arguments.compression, arguments.overwrite);
   Counts counts =
-      forEach(*recording, [&](const fast_edi::RecordingItem& item) { writer.write(item); });
-  writer.close();
+      forEach(*recording, [&](const fast_edi::RecordingItem& item) { writer->write(item); });
+  writer->close();
   if (const auto* bag = dynamic_cast<const fast_edi::BagRecording*>(recording.get())) {
     counts.left_out += bag->malformed();
   }
@@ -217,16 +218,15 @@ int toFolder(const Arguments& arguments) {
 }
 
 int toBag(const Arguments& arguments) {
-  if (!fast_edi::isKnownCompression(arguments.compression)) {
-    throw po::error("--compression " + arguments.compression +
-                    ": expected none, lz4 or bz2 for a bag");
+  const std::string compression = arguments.compression.empty() ? "lz4" : arguments.compression;
+  if (!fast_edi::isKnownCompression(compression)) {
+    throw po::error("--compression " + compression + ": expected none, lz4 or bz2 for a bag");
   }
   const auto array_ns = static_cast<std::int64_t>(
       arguments.array_ms * static_cast<double>(fast_edi::kNanosecondsPerMillisecond));
   const std::unique_ptr<fast_edi::MessageSource> source =
       fast_edi::openMessages(arguments.inputs, array_ns);
-  fast_edi::BagWriter writer(arguments.output, arguments.inputs, arguments.compression,
-                             arguments.overwrite);
+  fast_edi::BagWriter writer(arguments.output, arguments.inputs, compression, arguments.overwrite);
   std::uint64_t messages = 0;
   bool interrupted = false;
   {
@@ -254,11 +254,11 @@ int run(const Arguments& arguments) {
   if (extension == ".bag") {
     return toBag(arguments);
   }
-  if (extension == ".aedat4") {
-    return toAedat4(arguments);
+  if (tools::isRecordingOutput(arguments.output)) {
+    return toRecording(arguments);
   }
   if (!extension.empty() && !fs::is_directory(arguments.output)) {
-    throw po::error(arguments.output + ": expected OUT.bag, OUT.aedat4 or a folder");
+    throw po::error(arguments.output + ": expected OUT.bag, OUT.aedat4, OUT.h5 or a folder");
   }
   return toFolder(arguments);
 }

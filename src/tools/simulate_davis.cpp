@@ -32,7 +32,7 @@
 #include "fast_edi/bags/bag_writer.hpp"
 #include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/messages/event_array.hpp"
-#include "fast_edi/recording/aedat4_writer.hpp"
+#include "recording_output.hpp"
 #include "simulation/davis_simulator.hpp"
 #include "simulation/recording_faults.hpp"
 #include "simulation/sensor_models.hpp"
@@ -398,41 +398,31 @@ void showProgress(int done, int total, std::uint64_t events) {
   if (done == total) std::fputc('\n', stderr);
 }
 
-bool isAedat4(const std::string& path) {
-  return std::filesystem::path(path).extension() == ".aedat4";
-}
-
-fast_edi::Aedat4Compression aedat4Compression(const std::string& name) {
-  if (name == "none") return fast_edi::Aedat4Compression::kNone;
-  if (name == "lz4") return fast_edi::Aedat4Compression::kLz4;
-  if (name == "zstd") return fast_edi::Aedat4Compression::kZstd;
-  throw std::invalid_argument("--compression " + name + ": expected none, lz4 or zstd for AEDAT4");
-}
-
-/// Events, frames with their exposures and IMU samples of a bag; AEDAT4 has no place for the rest.
-void writeAedat4(const std::string& bag, const RecordingOptions& options) {
+/// Events, frames with their exposures and, in AEDAT4, IMU samples of a bag; there is no place for
+/// the rest.
+void writeRecording(const std::string& bag, const RecordingOptions& options) {
   fast_edi::TopicNames topics;
   topics.events = options.name_space + "/events";
   topics.image = options.name_space + "/image_raw";
   topics.exposure = options.name_space + "/exposure";
   fast_edi::BagRecording recording({bag}, topics);
-  fast_edi::Aedat4Writer writer(options.path, recording.streams(),
-                                aedat4Compression(options.compression), options.overwrite);
+  const auto writer = tools::makeRecordingWriter(options.path, recording.streams(),
+                                                 options.compression, options.overwrite);
   fast_edi::RecordingItem item;
   while (recording.next(item)) {
-    writer.write(item);
+    writer->write(item);
   }
-  writer.close();
+  writer->close();
 }
 
 void simulate(const SimulationSettings& settings, const RecordingOptions& options) {
   DavisSimulator simulator(settings);
   RecordingOptions bag = options;
-  if (isAedat4(options.path)) {
-    aedat4Compression(options.compression);  // throws before the work is done
+  if (tools::isRecordingOutput(options.path)) {
+    tools::checkCompression(options.path, options.compression);  // throws before the work is done
     if (options.stamp != ExposureInstant::kMid) {
       throw std::invalid_argument(
-          "--stamp: AEDAT4 has start and end of the exposure, expected mid");
+          "--stamp: AEDAT4 and HDF5 have start and end of the exposure, expected mid");
     }
     tools::requireFree(options.path, options.overwrite);
     bag.path += ".bag";  // for the time being
@@ -452,8 +442,8 @@ void simulate(const SimulationSettings& settings, const RecordingOptions& option
     if (terminal) showProgress(frames, settings.timing.frames, events);
   }
   recording.close(interval.end_ns);
-  if (isAedat4(options.path)) {
-    writeAedat4(bag.path, options);
+  if (tools::isRecordingOutput(options.path)) {
+    writeRecording(bag.path, options);
     std::filesystem::remove(bag.path);
   }
   const double seconds = static_cast<double>(interval.end_ns - settings.timing.start_ns) /
@@ -479,7 +469,7 @@ int run(int argc, char** argv) {
   po::options_description output("Recording");
   output.add_options()("help,h", "print this text");
   output.add_options()("out,o", po::value<std::string>()->value_name("PATH"),
-                       "bag to write, or AEDAT4 (.aedat4) without the true frames");
+                       "bag to write, or AEDAT4 (.aedat4) or HDF5 (.h5) without the true frames");
   bool overwrite_by_old_name = false;
   tools::addForceOption(output, options.overwrite);
   output.add_options()("overwrite", po::bool_switch(&overwrite_by_old_name), "old name of --force");

@@ -1,6 +1,7 @@
 #include "fast_edi/pictures/picture_folder_reader.hpp"
 
 #include <gmock/gmock.h>
+#include <zip.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +13,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "fast_edi/pictures/open_pictures.hpp"
+#include "fast_edi/recording/open_recording.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -37,8 +40,9 @@ struct Content {
   bool knows_exposures = false;
 };
 
-Content readAll(const std::string& path) {
-  const std::unique_ptr<Recording> reader = openPictureFolder(path);
+Content readAll(const std::string& path, bool archive = false) {
+  const std::unique_ptr<Recording> reader =
+      archive ? openPictureArchive(path) : openPictureFolder(path);
   Content content;
   RecordingItem item;
   std::int64_t before_ns = 0;
@@ -144,7 +148,27 @@ class PictureFolder : public ::testing::Test {
     writeEvents("Events.txt", head, line);
   }
 
+  /// All files as an archive.
+  std::string pack() const {
+    const std::string archive = archives_.file("packed.zip");
+    int code = 0;
+    zip_t* packed = zip_open(archive.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code);
+    EXPECT_NE(packed, nullptr);
+    const std::filesystem::path root = file("");
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
+      if (entry.is_regular_file()) {
+        const std::string name = entry.path().lexically_relative(root).string();
+        EXPECT_GE(zip_file_add(packed, name.c_str(),
+                               zip_source_file(packed, entry.path().c_str(), 0, -1), 0),
+                  0);
+      }
+    }
+    EXPECT_EQ(zip_close(packed), 0);
+    return archive;
+  }
+
   const TemporaryDirectory directory_;
+  const TemporaryDirectory archives_;
   std::vector<std::vector<std::uint8_t>> pixels_;
 };
 
@@ -160,6 +184,34 @@ TEST_F(PictureFolder, OfEvdi) {
       },
       1);
   expectEverything(readAll(folder()), true);
+}
+
+TEST_F(PictureFolder, AsAnArchiveGivesTheSame) {
+  writeIjrr();
+  const std::string archive = pack();
+  EXPECT_EQ(formatOf(archive), RecordingFormat::kZip);
+  EXPECT_EQ(openRecordingOrPictures(archive)->format(), "pictures and text, zip");
+  expectEverything(readAll(archive, true), false);
+}
+
+TEST_F(PictureFolder, OfEvdiAsAnArchiveGivesTheSame) {
+  writeEvdi(
+      [](std::ostream& out, const Event& event) {
+        out << event.t_ns << " " << event.x << " " << event.y << " " << (event.on ? 1 : -1);
+      },
+      1);
+  expectEverything(readAll(pack(), true), true);
+}
+
+TEST_F(PictureFolder, ArchiveOfOtherThingsIsRefused) {
+  std::ofstream(file("notes.txt")) << "nothing";
+  const std::string archive = pack();
+  try {
+    openRecordingOrPictures(archive);
+    ADD_FAILURE() << "not refused";
+  } catch (const RecordingError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is a zip archive, but no recording: expected images.txt"));
+  }
 }
 
 TEST_F(PictureFolder, WithNamedColumns) {
@@ -218,13 +270,13 @@ TEST_F(PictureFolder, BadLinesAreNamedAndLeftOut) {
   EXPECT_THAT(content.events, SizeIs(kEvents + 1));
   EXPECT_THAT(content.frames, SizeIs(kFrames - 1));
   ASSERT_THAT(content.damage, SizeIs(5));
-  EXPECT_THAT(content.damage[0].what, HasSubstr("10.png"));
-  EXPECT_THAT(content.damage[1].what,
+  EXPECT_THAT(content.damage[0].what,
               HasSubstr("of events.txt, line 1201: found \"0.2 1 1\", expected time, x, y and"));
-  EXPECT_THAT(content.damage[2].what, HasSubstr("expected a pixel of the 24x16"));
-  EXPECT_THAT(content.damage[3].what, HasSubstr("expected a time from 0 to 2^32 s"));
-  EXPECT_THAT(content.damage[4].what, HasSubstr("nonsense"));
-  EXPECT_GT(content.damage[4].offset, content.damage[3].offset);
+  EXPECT_THAT(content.damage[1].what, HasSubstr("expected a pixel of the 24x16"));
+  EXPECT_THAT(content.damage[2].what, HasSubstr("expected a time from 0 to 2^32 s"));
+  EXPECT_THAT(content.damage[3].what, HasSubstr("nonsense"));
+  EXPECT_GT(content.damage[3].offset, content.damage[2].offset);
+  EXPECT_THAT(content.damage[4].what, HasSubstr("10.png"));
 }
 
 TEST_F(PictureFolder, SaysWhatIsNotClear) {

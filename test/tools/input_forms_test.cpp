@@ -149,37 +149,69 @@ TEST_F(InputForms, PicturesAndText) {
       }
     }
   }
-  const CommandResult result = runCommand(kTools + "deblur_bag --in " + file("evdi") + kThresholds +
-                                          " --out " + file("evdi.bag"));
-  ASSERT_EQ(result.exit_code, 0) << result.output;
-  const std::vector<sensor_msgs::Image> frames =
-      imagesOn(file("evdi.bag"), "/dvs/deblurred/image_raw");
-  ASSERT_THAT(frames, SizeIs(kFrames));
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    EXPECT_EQ(frames[i].header.stamp, expected_[i].header.stamp);
-    EXPECT_EQ(frames[i].data, expected_[i].data);
+  const CommandResult packed =
+      runCommand("cd " + file("evdi") + " && python3 -m zipfile -c ../evdi.zip *");
+  ASSERT_EQ(packed.exit_code, 0) << packed.output;
+  for (const char* name : {"evdi", "evdi.zip"}) {
+    const CommandResult result = runCommand(kTools + "deblur_bag --in " + file(name) + kThresholds +
+                                            " --force --out " + file("evdi.bag"));
+    ASSERT_EQ(result.exit_code, 0) << result.output;
+    const std::vector<sensor_msgs::Image> frames =
+        imagesOn(file("evdi.bag"), "/dvs/deblurred/image_raw");
+    ASSERT_THAT(frames, SizeIs(kFrames)) << name;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      EXPECT_EQ(frames[i].header.stamp, expected_[i].header.stamp) << name;
+      EXPECT_EQ(frames[i].data, expected_[i].data) << name;
+    }
   }
 }
 
-TEST_F(InputForms, SimulatedAsAedat4) {
+TEST_F(InputForms, SimulatedInOtherFormats) {
   const std::string simulate = kTools + "simulate_davis --frames 3 --width 64 --height 48 --out ";
-  for (const char* arguments : {"s.bag", "s.aedat4 --compression zstd"}) {
+  for (const char* arguments :
+       {"s.bag", "s.aedat4 --compression zstd", "s.h5", "s.hdf5 --compression gzip"}) {
     const CommandResult result = runCommand(simulate + file(arguments));
     ASSERT_EQ(result.exit_code, 0) << result.output;
   }
   EXPECT_FALSE(std::filesystem::exists(file("s.aedat4.bag")));
-  for (const char* name : {"s.bag", "s.aedat4"}) {
+  EXPECT_FALSE(std::filesystem::exists(file("s.h5.bag")));
+  for (const char* name : {"s.bag", "s.aedat4", "s.h5", "s.hdf5"}) {
     const CommandResult result = runCommand(kTools + "deblur_bag --in " + file(name) + kThresholds +
                                             " --out " + file(name) + ".out");
     ASSERT_EQ(result.exit_code, 0) << result.output;
   }
   const auto of_bag = imagesOn(file("s.bag.out"), "/dvs/deblurred/image_raw");
-  const auto of_aedat4 = imagesOn(file("s.aedat4.out"), "/dvs/deblurred/image_raw");
   ASSERT_THAT(of_bag, SizeIs(3));
-  ASSERT_THAT(of_aedat4, SizeIs(3));
-  for (std::size_t i = 0; i < of_bag.size(); ++i) {
-    EXPECT_EQ(of_aedat4[i].header.stamp, of_bag[i].header.stamp);
-    EXPECT_EQ(of_aedat4[i].data, of_bag[i].data);
+  for (const char* name : {"s.aedat4.out", "s.h5.out", "s.hdf5.out"}) {
+    const auto of_other = imagesOn(file(name), "/dvs/deblurred/image_raw");
+    ASSERT_THAT(of_other, SizeIs(3)) << name;
+    for (std::size_t i = 0; i < of_bag.size(); ++i) {
+      EXPECT_EQ(of_other[i].header.stamp, of_bag[i].header.stamp) << name;
+      EXPECT_EQ(of_other[i].data, of_bag[i].data) << name;
+    }
+  }
+  EXPECT_THAT(runCommand(simulate + file("x.h5 --compression lz4")).output,
+              HasSubstr("--compression lz4: expected none or gzip for HDF5"));
+}
+
+TEST_F(InputForms, OtherToolsTakeHdf5) {
+  CommandResult result =
+      runCommand(kTools + "convert_recording " + bag_ + " " + file("r.h5") + " --compression none");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr(" 4 frames, 4 of them with their exposure"));
+  result = runCommand(kTools + "count_tags " + file("r.h5") + kThresholds);
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("4 frames deblurred of 4"));
+  result = runCommand(kTools + "validate_bag " + file("r.h5") + kThresholds);
+  EXPECT_NE(result.exit_code, 1) << result.output;
+  result = runCommand(kTools + "convert_recording " + file("r.h5") + " " + file("again.bag"));
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  const auto frames = imagesOn(file("again.bag"), "/dvs/image_raw");
+  const auto recorded = imagesOn(bag_, "/dvs/image_raw");
+  ASSERT_THAT(frames, SizeIs(kFrames));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].header.stamp, recorded[i].header.stamp);
+    EXPECT_EQ(frames[i].data, recorded[i].data);
   }
 }
 

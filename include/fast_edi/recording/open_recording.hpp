@@ -9,14 +9,15 @@
 
 namespace fast_edi {
 
-enum class RecordingFormat { kUnknown, kRosbag, kAedat4, kAedat2, kAedat3, kRosbag2 };
+enum class RecordingFormat { kUnknown, kRosbag, kAedat4, kAedat2, kAedat3, kRosbag2, kHdf5, kZip };
 
 /// By the first bytes of the file; a folder by the files in it.
 /// \throws RecordingError when \p path cannot be read
 RecordingFormat formatOf(const std::string& path);
 
-/// The reader for a recording that is no rosbag; null when its format is not known, or rosbag,
-/// whose reader needs ROS (see openMessages()).
+/// The reader for a recording; null when its format is not known, or its reader needs further
+/// libraries: rosbag needs ROS (see openMessages()), HDF5 and zip archives need
+/// theirs (see openRecordingOrPictures()).
 /// \throws RecordingError when the file cannot be read at all
 std::unique_ptr<Recording> openRecording(const std::string& path);
 

@@ -4,7 +4,8 @@
 ///
 /// - Events: `EventArray` of dvs_msgs, dv_ros2_msgs, dv_ros_msgs and prophesee_event_msgs;
 ///   event_camera_msgs/EventPacket (see event_packet_decoder.hpp).
-/// - Frames: sensor_msgs/Image. If there is a topic `exposure` (std_msgs/Int32, microseconds)
+/// - Frames: sensor_msgs/Image, or CompressedImage on TOPIC/compressed where TOPIC was not
+/// recorded. If there is a topic `exposure` (std_msgs/Int32, microseconds)
 ///   beside them, each frame gets its exposure time from the message after it; if the next frame
 ///   comes first, its exposure is not known.
 /// - sensor_msgs/Imu and CameraInfo.
@@ -16,12 +17,14 @@
 #include <memory>
 #include <string>
 
+#include "fast_edi/recording/picture_decoder.hpp"
 #include "fast_edi/recording/recording.hpp"
 
 namespace fast_edi {
 
 /// \param path of the folder, of its metadata.yaml, or of one file with messages
+/// \param decode for compressed frames; without it they are left out, which is noted
 /// \throws RecordingError when nothing at all can be read
-std::unique_ptr<Recording> openRosbag2(const std::string& path);
+std::unique_ptr<Recording> openRosbag2(const std::string& path, PictureDecoder decode = nullptr);
 
 }  // namespace fast_edi

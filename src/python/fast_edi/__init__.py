@@ -297,8 +297,8 @@ class Recording:
 
 def open(path: Path, *, time_unit: str = "us") -> Recording:
     """
-    Opens a recording by its content: AEDAT4, AEDAT3.1, AEDAT2 and rosbag2 (ROS 2); rosbags of ROS 1 and
-    folders of pictures with text where the module was built with ROS.
+    Opens a recording by its content: AEDAT4, AEDAT3.1, AEDAT2 and rosbag2 (ROS 2); rosbags of ROS 1, HDF5,
+    and folders or zip archives of pictures with text where the module was built with ROS.
 
     Raises OSError when it cannot be read, ValueError when it is no recording that is read.
     """
@@ -310,12 +310,12 @@ def open(path: Path, *, time_unit: str = "us") -> Recording:
         try:
             from . import _bags
         except ImportError as error:
-            missing = f"; rosbags of ROS 1 and folders of pictures need the catkin package ({error})"
+            missing = f"; rosbags of ROS 1, HDF5 and pictures need the catkin package ({error})"
         else:
             recording = _bags.open_recording(name, unit_ns)
     if recording is None:
         raise ValueError(f"{name} is no recording that is read: it is neither AEDAT4, AEDAT3.1, AEDAT2 "
-                         f"nor rosbag2, nor a rosbag or folder of pictures with text{missing}")
+                         f"nor rosbag2, nor a rosbag, HDF5, or folder or archive of pictures with text{missing}")
     return Recording(recording, name)
 
 

@@ -1,0 +1,35 @@
+#include "recording/output_path.hpp"
+
+#include <filesystem>
+#include <system_error>
+
+#include "fast_edi/recording/recording_error.hpp"
+
+namespace fast_edi {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+OutputPath::OutputPath(const std::string& path, bool overwrite)
+    : path_(path), active_(path + ".active") {
+  for (const std::string& output : {path_, active_}) {
+    if (fs::is_directory(output)) {
+      throw RecordingError("cannot write " + output + ": it is a directory");
+    }
+    if (!overwrite && fs::exists(output)) {
+      throw RecordingError("cannot write " + output + ": it exists already (--force replaces it)");
+    }
+  }
+}
+
+void OutputPath::complete() const {
+  std::error_code error;
+  fs::rename(active_, path_, error);
+  if (error) {
+    throw RecordingError("cannot rename " + active_ + " to " + path_ + ": " + error.message());
+  }
+}
+
+}  // namespace fast_edi
