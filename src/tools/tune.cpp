@@ -32,12 +32,12 @@ std::string runWindow(const Arguments& arguments, TuningSession& session, View& 
     const TuningEffect effect = session.moveSlider(slider, position);
     pending = effect == TuningEffect::kNone ? pending : effect;
   });
-  const auto placeSliders = [&] {
+  const auto place_sliders = [&] {
     for (std::size_t i = 0; i < session.sliders().size(); ++i) {
       window.moveSlider(i, session.position(i));
     }
   };
-  placeSliders();
+  place_sliders();
   while (window.isOpen()) {
     if (pending == TuningEffect::kDeblur) {
       view.update(session);
@@ -61,7 +61,7 @@ std::string runWindow(const Arguments& arguments, TuningSession& session, View& 
         pending = TuningEffect::kRedraw;
         break;
       case TuningEffect::kMarks:
-        placeSliders();
+        place_sliders();
         pending = TuningEffect::kDeblur;
         break;
       case TuningEffect::kNone:

@@ -65,11 +65,12 @@ cv::Mat drawPanels(const TuningSession& session, const TunedFrame& frame) {
   sheet.columns = {"blurry frame", "events (red ON, blue OFF)", "deblurred"};
   SheetRow row;
   row.label = frame.description;
+  row.panels = {frame.blurry, frame.events, frame.deblurred};
   const double gain = displayGain(greyOf(frame.blurry));
   if (gain > kNoticeableGain) {
     sheet.title += "  (shown " + fixedText(gain, 1) + " times as bright)";
+    row.panels = {brighter(frame.blurry, gain), frame.events, brighter(frame.deblurred, gain)};
   }
-  row.panels = {brighter(frame.blurry, gain), frame.events, brighter(frame.deblurred, gain)};
   row.captions = {sharpnessCaption(frame.blurry), "", sharpnessCaption(frame.deblurred)};
   sheet.rows = {row};
   return drawSheet(sheet);

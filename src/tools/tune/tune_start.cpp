@@ -20,7 +20,7 @@ namespace {
 TopicNames topicsOf(const Arguments& arguments, const MessageSource& recording) {
   TopicNames wanted = arguments.topics;
   wanted.output = "/tune";  // writes none: topics of deblurred frames may be there already
-  const TopicNames topics = guessTopics(wanted, recording.connections());
+  TopicNames topics = guessTopics(wanted, recording.connections());
   std::cout << guessText(wanted, topics, recording.connections());
   const std::string faults = checkTopics(topics, recording.connections());
   if (!faults.empty()) {
