@@ -3,16 +3,19 @@
 
     build/peers/bin/python test/peers/rosbag2.py IN.bag OUT_FOLDER [--storage sqlite3|mcap]
         [--compression none|file|message|storage] [--frames N] [--window WIDTHxHEIGHT]
-        [--packets libcaer|libcaer_cmp|mono|evt3] [--big-endian]
+        [--packets libcaer|libcaer_cmp|mono|evt3] [--big-endian] [--png]
 
-IN.bag has the driver's topics: events, mono8 frames and their exposures; IMU and calibration where there
+IN.bag has the driver's topics: events, mono8 or mono16 frames and their exposures; IMU and calibration where there
 are any. N frames from the beginning, and of these the upper left window. With --packets events are
-written as event_camera_msgs/EventPacket, in whole microseconds except for mono.
+written as event_camera_msgs/EventPacket, in whole microseconds except for mono; with --png frames as
+sensor_msgs/CompressedImage, by Pillow. With --big-endian also the samples of mono16 are.
 """
 import argparse
+import io
 import pathlib
 
 import numpy
+from PIL import Image
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
@@ -28,6 +31,8 @@ bool is_bigendian
 uint8[] events
 """
 PACKET_TYPE = "event_camera_msgs/msg/EventPacket"
+IMAGE_TYPE = "sensor_msgs/msg/Image"
+PNG_TYPE = "sensor_msgs/msg/CompressedImage"
 
 
 def times_ns(array):
@@ -114,12 +119,30 @@ def cut(message, window):
     if hasattr(message, "events"):
         message.events = [event for event in message.events if event.x < width and event.y < height]
     elif hasattr(message, "encoding"):
+        sample = message.step // message.width
         rows = message.data.reshape(message.height, message.step)
-        message.data = numpy.ascontiguousarray(rows[:height, :width]).reshape(-1)
-        message.step = width
+        message.data = numpy.ascontiguousarray(rows[:height, :width * sample]).reshape(-1)
+        message.step = width * sample
     else:
         return
     message.width, message.height = width, height
+
+
+def png(message, types):
+    """As image_transport compresses a frame."""
+    kind = "<u2" if message.encoding == "mono16" else "u1"
+    pixels = numpy.frombuffer(message.data.tobytes(), kind).reshape(message.height, message.width)
+    file = io.BytesIO()
+    Image.fromarray(pixels).save(file, "PNG")
+    return types[PNG_TYPE](message.header, f"{message.encoding}; png compressed ",
+                           numpy.frombuffer(file.getvalue(), numpy.uint8))
+
+
+def swap(message):
+    """Samples of 16 bits in the other order."""
+    if getattr(message, "encoding", "") == "mono16":
+        message.data = numpy.frombuffer(message.data.tobytes(), "<u2").astype(">u2").view(numpy.uint8)
+        message.is_bigendian = 1
 
 
 def main():
@@ -134,6 +157,7 @@ def main():
     parser.add_argument("--window", metavar="WIDTHxHEIGHT")
     parser.add_argument("--packets", choices=["libcaer", "libcaer_cmp", "mono", "evt3"])
     parser.add_argument("--big-endian", action="store_true")
+    parser.add_argument("--png", action="store_true")
     arguments = parser.parse_args()
     window = tuple(map(int, arguments.window.split("x"))) if arguments.window else None
     types = get_typestore(Stores.ROS2_HUMBLE)
@@ -150,24 +174,30 @@ def main():
         connections = {}
         for connection in reader.connections:
             if connection.topic in TOPICS:
-                events = connection.topic == "/dvs/events" and arguments.packets
-                connections[connection.id] = writer.add_connection(
-                    connection.topic, PACKET_TYPE if events else connection.msgtype,
-                    typestore=types)
+                topic, kind = connection.topic, connection.msgtype
+                if topic == "/dvs/events" and arguments.packets:
+                    kind = PACKET_TYPE
+                elif kind == IMAGE_TYPE and arguments.png:
+                    topic, kind = f"{topic}/compressed", PNG_TYPE
+                connections[connection.id] = writer.add_connection(topic, kind, typestore=types)
         for connection, stamp, raw in reader.messages():
             if connection.id not in connections:
                 continue
             # Types of ROS 1 have a sequence number in their headers.
             raw = types.ros1_to_cdr(raw, connection.msgtype)
             kind = connection.msgtype
-            if window or arguments.packets or arguments.big_endian:
+            frames += kind == IMAGE_TYPE
+            if window or arguments.packets or arguments.big_endian or arguments.png:
                 message = types.deserialize_cdr(raw, kind)
                 cut(message, window)
                 if arguments.packets and kind.endswith("EventArray"):
                     message, kind = packets.packet(message, types.types), PACKET_TYPE
+                elif arguments.png and kind == IMAGE_TYPE:
+                    message, kind = png(message, types.types), PNG_TYPE
+                elif arguments.big_endian:
+                    swap(message)
                 raw = types.serialize_cdr(message, kind, little_endian=not arguments.big_endian)
             writer.write(connections[connection.id], stamp, raw)
-            frames += kind.endswith("msg/Image")
             if frames == arguments.frames and connection.topic == "/dvs/events":
                 break
 
