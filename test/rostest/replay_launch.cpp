@@ -1,6 +1,7 @@
 // The launch files that play a recording: no frame of it may be lost, neither the first nor the
 // last. Starts roslaunch itself, with a master of its own.
 
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,42 @@ TEST_P(ReplayLaunch, RecordsOneOutputForEachFrame) {
   const std::vector<Output> outputs = readOutputs(out);
   expectOneOutputForEachFrame(recording, outputs);
   expectSameImages(outputs, deblurWithoutRos(recording, testParameters()));
+}
+
+/// Of another format than rosbag.
+TEST(ReplayLaunchOfHdf5, RecordsOneOutputForEachFrame) {
+  const TemporaryDirectory directory;
+  const std::string bag = directory.file("in.bag");
+  const std::string in = directory.file("it's \"my\" robot & $HOME [1].h5");
+  const std::string out = directory.file("out.bag");
+  const Recording recording = makeRecording({});
+  writeBag(recording, "/dvs", bag);
+  ChildProcess convert({FAST_EDI_CONVERT_RECORDING, bag, in});
+  ASSERT_EQ(convert.wait(), 0);
+  ChildProcess launch({"roslaunch", "-p", freePort(), FAST_EDI_SOURCE_DIR "/launch/replay.launch",
+                       "bag:=" + in, "record:=" + out,
+                       "config:=" FAST_EDI_SOURCE_DIR "/test/rostest/long_timeout.yaml"});
+  ASSERT_EQ(launch.wait(), 0);
+  const std::vector<Output> outputs = readOutputs(out);
+  // Without calibration, which HDF5 does not have.
+  const std::vector<Output> expected = deblurWithoutRos(recording, testParameters());
+  ASSERT_EQ(outputs.size(), expected.size());
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    EXPECT_EQ(outputs[i].image->header.stamp, expected[i].image->header.stamp);
+    EXPECT_EQ(outputs[i].image->data, expected[i].image->data);
+  }
+}
+
+TEST(ReplayLaunchOfWhatIsNoRecording, Ends) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.txt");
+  std::ofstream(in) << "no recording";
+  const auto result =
+      testing::runCommand("timeout 60 roslaunch -p " + freePort() +
+                          " " FAST_EDI_SOURCE_DIR "/launch/replay.launch bag:=" + in);
+  EXPECT_NE(result.exit_code, 124) << "it waited for a recording: " << result.output;
+  EXPECT_NE(result.output.find("in.txt is no bag, nor another recording"), std::string::npos)
+      << result.output;
 }
 
 TEST(ReplayLaunchWithoutARecorder, Ends) {
