@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstring>
 #include <set>
-#include <type_traits>
 #include <utility>
 
 #include <ros/message_traits.h>
@@ -16,8 +14,8 @@
 #include <boost/make_shared.hpp>
 
 #include "fast_edi/events/event_wire.hpp"
-#include "fast_edi/exposure/stamp_limits.hpp"
 #include "fast_edi/messages/event_array.hpp"
+#include "messages/recorded_messages.hpp"
 
 namespace fast_edi {
 namespace {
@@ -27,12 +25,6 @@ constexpr char kFirstNamespace[] = "/dvs";
 /// A converter's arrays never grow beyond this, however long they were asked to be.
 constexpr std::size_t kMaxArrayEvents = 1'000'000;
 constexpr std::size_t kSpareBuffers = 4;
-
-ros::Time rosTime(std::int64_t t_ns) {
-  ros::Time time;
-  time.fromNSec(static_cast<std::uint64_t>(std::clamp<std::int64_t>(t_ns, 0, kLastStamp_ns)));
-  return time;
-}
 
 /// A name that a topic can have.
 std::string topicName(const std::string& name) {
@@ -48,29 +40,6 @@ std::string topicName(const std::string& name) {
   return topic.empty() || std::isalpha(static_cast<unsigned char>(topic.front())) == 0
              ? "camera_" + topic
              : topic;
-}
-
-/// Appends wire records; a second's part is found once for all events within it.
-void appendRecords(const Event* events, std::size_t count, std::vector<std::uint8_t>& records) {
-  const std::size_t begin = records.size();
-  records.resize(begin + count * kWireEventBytes);
-  std::uint8_t* record = records.data() + begin;
-  std::int64_t second_ns = 0;
-  std::uint32_t second = 0;
-  for (const Event* event = events; event != events + count; ++event, record += kWireEventBytes) {
-    std::int64_t rest = event->t_ns - second_ns;
-    if (rest < 0 || rest >= kNanosecondsPerSecond) {
-      second = static_cast<std::uint32_t>(event->t_ns / kNanosecondsPerSecond);
-      second_ns = std::int64_t{second} * kNanosecondsPerSecond;
-      rest = event->t_ns - second_ns;
-    }
-    const auto nanoseconds = static_cast<std::uint32_t>(rest);
-    std::memcpy(record, &event->x, sizeof(event->x));
-    std::memcpy(record + 2, &event->y, sizeof(event->y));
-    std::memcpy(record + 4, &second, sizeof(second));
-    std::memcpy(record + 8, &nanoseconds, sizeof(nanoseconds));
-    record[12] = event->on ? 1 : 0;
-  }
 }
 
 }  // namespace
@@ -152,7 +121,7 @@ void RecordingMessages::send(std::uint32_t connection, std::int64_t record_ns,
                              const Message& message) {
   Waiting waiting;
   waiting.connection = connection;
-  waiting.time = rosTime(record_ns);
+  waiting.time = stampOf(record_ns);
   if (!spare_.empty()) {
     waiting.bytes = std::move(spare_.back());
     spare_.pop_back();
@@ -226,7 +195,7 @@ void RecordingMessages::addEvents(Output& output, const RecordedEvents& events,
         return event.t_ns >= output.first_ns + array_ns_ || event.t_ns < output.first_ns;
       });
     }
-    appendRecords(begin, static_cast<std::size_t>(array_end - begin), output.records);
+    encodeWireEvents(begin, static_cast<std::size_t>(array_end - begin), output.records);
     if (array_end != begin) {
       output.last_ns = (array_end - 1)->t_ns;
     }
@@ -244,7 +213,7 @@ void RecordingMessages::sendArray(Output& output, std::int64_t record_ns) {
   }
   EventArrayView array;
   array.header.seq = output.sequence++;
-  array.header.stamp = rosTime(output.first_ns);
+  array.header.stamp = stampOf(output.first_ns);
   array.width = static_cast<std::uint32_t>(output.size.width);
   array.height = static_cast<std::uint32_t>(output.size.height);
   array.assign({output.records.data(), output.records.size() / kWireEventBytes});
@@ -256,33 +225,17 @@ void RecordingMessages::addFrame(Output& output, const RecordedFrame& frame,
                                  std::int64_t record_ns) {
   sensor_msgs::Image image;
   image.header.seq = output.sequence++;
-  image.header.stamp = rosTime(frame.stamp_ns);
-  image.width = static_cast<std::uint32_t>(frame.size.width);
-  image.height = static_cast<std::uint32_t>(frame.size.height);
-  image.encoding = frame.encoding;
-  image.step = image.height == 0 ? 0 : static_cast<std::uint32_t>(frame.bytes / image.height);
-  image.data.assign(frame.pixels, frame.pixels + frame.bytes);
+  fillImage(frame, image);
   send(output.connection, record_ns, image);
   if (frame.exposure) {
-    std_msgs::Int32 exposure;
-    exposure.data = static_cast<std::int32_t>(
-        std::min<std::int64_t>(frame.exposure->length() / kNanosecondsPerMicrosecond, INT32_MAX));
-    send(output.exposure_connection, record_ns, exposure);
+    send(output.exposure_connection, record_ns, exposureMessage(*frame.exposure));
   }
 }
 
 void RecordingMessages::addImu(Output& output, const RecordedImu& sample, std::int64_t record_ns) {
   sensor_msgs::Imu message;
   message.header.seq = output.sequence++;
-  message.header.stamp = rosTime(sample.t_ns);
-  message.header.frame_id = "base_link";  // the driver's
-  message.linear_acceleration.x = sample.acceleration[0];
-  message.linear_acceleration.y = sample.acceleration[1];
-  message.linear_acceleration.z = sample.acceleration[2];
-  message.angular_velocity.x = sample.angular_velocity[0];
-  message.angular_velocity.y = sample.angular_velocity[1];
-  message.angular_velocity.z = sample.angular_velocity[2];
-  message.orientation_covariance[0] = -1.0;  // there is no orientation
+  fillImu(sample, message);
   send(output.connection, record_ns, message);
 }
 

@@ -58,4 +58,25 @@ void encodeWireEvent(const Event& event, std::vector<std::uint8_t>& bytes) {
   writeWireEvent(event, bytes.data() + begin);
 }
 
+void encodeWireEvents(const Event* events, std::size_t count, std::vector<std::uint8_t>& bytes) {
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + count * kWireEventBytes);
+  std::uint8_t* record = bytes.data() + begin;
+  // The second's part is found once for all events within it: a division takes longer than the
+  // rest.
+  std::int64_t second_ns = 0;
+  std::uint32_t second = 0;
+  for (const Event* event = events; event != events + count; ++event, record += kWireEventBytes) {
+    std::int64_t rest_ns = event->t_ns - second_ns;
+    if (rest_ns < 0 || rest_ns >= kNanosecondsPerSecond) {
+      second = static_cast<std::uint32_t>(event->t_ns / kNanosecondsPerSecond);
+      second_ns = std::int64_t{second} * kNanosecondsPerSecond;
+      rest_ns = event->t_ns - second_ns;
+    }
+    setWirePixel(event->x, event->y, event->on, record);
+    writeNumber(second, record + kSecondsOffset);
+    writeNumber(static_cast<std::uint32_t>(rest_ns), record + kNanosecondsOffset);
+  }
+}
+
 }  // namespace fast_edi

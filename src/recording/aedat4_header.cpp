@@ -184,6 +184,33 @@ void completeSizes(Aedat4Header& header) {
 
 }  // namespace
 
+std::string decodeAedat4Header(FlatBytes io_header, Aedat4Header& header) {
+  const std::optional<FlatTable> table = FlatTable::root(io_header, kAedat4Header);
+  if (!table) {
+    return "expected a header with the identifier IOHE";
+  }
+  const auto compression = table->number<std::int32_t>(kHeaderCompression, 0);
+  switch (compression) {  // fast and high compression of each library have one format
+    case 0:
+      header.compression = Compression::kNone;
+      break;
+    case 1:
+    case 2:
+      header.compression = Compression::kLz4;
+      break;
+    case 3:
+    case 4:
+      header.compression = Compression::kZstd;
+      break;
+    default:
+      return "compression " + std::to_string(compression) +
+             ", expected 0 (none), 1 or 2 (LZ4), 3 or 4 (ZSTD)";
+  }
+  readDescription(table->text(kHeaderInfo), header);
+  completeSizes(header);
+  return {};
+}
+
 Aedat4Header readAedat4Header(const ByteSource& file, const std::string& path) {
   const auto fail = [&path](std::uint64_t offset, const std::string& what) {
     throw RecordingError(path + ", byte " + std::to_string(offset) + ": " + what);
@@ -202,30 +229,14 @@ Aedat4Header readAedat4Header(const ByteSource& file, const std::string& path) {
                           ", to the end of the file");
   }
   bytes = file.read(kMagicBytes, sizeof(size) + size, scratch);
-  const std::optional<FlatTable> table =
-      bytes == nullptr ? std::nullopt
-                       : FlatTable::root({bytes, sizeof(size) + size}, kAedat4Header);
-  if (!table) {
-    fail(kMagicBytes, "expected a header with the identifier IOHE");
-  }
+  const FlatBytes io_header = {bytes, bytes == nullptr ? 0 : sizeof(size) + size};
   Aedat4Header header;
   header.first_packet = header_end;
-  const auto compression = table->number<std::int32_t>(kHeaderCompression, 0);
-  switch (compression) {  // fast and high compression of each library have one format
-    case 0:
-      break;
-    case 1:
-    case 2:
-      header.compression = Compression::kLz4;
-      break;
-    case 3:
-    case 4:
-      header.compression = Compression::kZstd;
-      break;
-    default:
-      fail(kMagicBytes, "compression " + std::to_string(compression) +
-                            ", expected 0 (none), 1 or 2 (LZ4), 3 or 4 (ZSTD)");
+  const std::string fault = decodeAedat4Header(io_header, header);
+  if (!fault.empty()) {
+    fail(kMagicBytes, fault);
   }
+  const std::optional<FlatTable> table = FlatTable::root(io_header, kAedat4Header);
   const auto data_table = table->number<std::int64_t>(kHeaderDataTable, -1);
   if (data_table > 0 && static_cast<std::uint64_t>(data_table) >= header_end &&
       static_cast<std::uint64_t>(data_table) < file.size()) {
@@ -234,8 +245,6 @@ Aedat4Header readAedat4Header(const ByteSource& file, const std::string& path) {
     header.faults.push_back("the data table is said to be at byte " + std::to_string(data_table) +
                             " of " + std::to_string(file.size()) + ": the file is cut");
   }
-  readDescription(table->text(kHeaderInfo), header);
-  completeSizes(header);
   return header;
 }
 

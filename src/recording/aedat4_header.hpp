@@ -10,6 +10,7 @@
 
 #include "fast_edi/recording/byte_source.hpp"
 #include "fast_edi/recording/recording.hpp"
+#include "recording/flatbuffer.hpp"
 #include "recording/packet_compression.hpp"
 
 namespace fast_edi {
@@ -39,6 +40,12 @@ struct Aedat4Header {
   std::optional<BiasConfiguration> biases;
   std::vector<std::string> faults;  ///< of the streams' description
 };
+
+/// Compression, streams and biases; places in a file are left as they are.
+/// \param io_header with its size in front
+/// \param header set unless something is wrong
+/// \return what is wrong; empty if nothing is
+std::string decodeAedat4Header(FlatBytes io_header, Aedat4Header& header);
 
 /// \throws RecordingError
 Aedat4Header readAedat4Header(const ByteSource& file, const std::string& path);

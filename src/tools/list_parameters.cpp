@@ -6,6 +6,7 @@
 #include <boost/program_options.hpp>
 
 #include "command_line.hpp"
+#include "fast_edi/config/dv_stream_parameters.hpp"
 #include "fast_edi/config/parameter_table.hpp"
 #include "fast_edi/config/tag_detector_parameters.hpp"
 
@@ -33,7 +34,8 @@ void print(bool markdown) {
   if (markdown) {
     std::cout << fast_edi::markdownTable(fast_edi::parameterDescriptions()) << "\n"
               << fast_edi::markdownTable(fast_edi::biasDescriptions()) << "\n"
-              << fast_edi::markdownTable(fast_edi::tagDetectorDescriptions());
+              << fast_edi::markdownTable(fast_edi::tagDetectorDescriptions()) << "\n"
+              << fast_edi::markdownTable(fast_edi::dvStreamDescriptions());
     return;
   }
   printText(fast_edi::parameterDescriptions());
@@ -41,6 +43,8 @@ void print(bool markdown) {
   printText(fast_edi::biasDescriptions());
   std::cout << "\nOf the tag detector:\n";
   printText(fast_edi::tagDetectorDescriptions());
+  std::cout << "\nOf the streams of DV:\n";
+  printText(fast_edi::dvStreamDescriptions());
 }
 
 }  // namespace

@@ -31,6 +31,25 @@ TEST(EventWire, EncodesTheGoldenRecord) {
   EXPECT_THAT(bytes, ElementsAreArray(kGoldenRecord));
 }
 
+TEST(EventWire, EncodesManyAsOneByOne) {
+  // Within a second, over its end, and back.
+  const std::vector<Event> events = {{345, 259, kGoldenTimeNs, true},
+                                     {0, 1, kGoldenTimeNs + 1, false},
+                                     {2, 3, kGoldenTimeNs + kNanosecondsPerSecond, true},
+                                     {4, 5, 0, false},
+                                     {6, 7, 999'999'999, true},
+                                     {8, 9, kNanosecondsPerSecond, true}};
+  std::vector<std::uint8_t> expected = {1, 2, 3};  // what is there stays
+  std::vector<std::uint8_t> bytes = expected;
+  for (const Event& event : events) {
+    encodeWireEvent(event, expected);
+  }
+  encodeWireEvents(events.data(), events.size(), bytes);
+  EXPECT_EQ(bytes, expected);
+  encodeWireEvents(nullptr, 0, bytes);
+  EXPECT_EQ(bytes, expected);
+}
+
 TEST(EventWire, AnyNonZeroPolarityIsOn) {
   std::array<std::uint8_t, kWireEventBytes> record = kGoldenRecord;
   for (int polarity = 0; polarity <= std::numeric_limits<std::uint8_t>::max(); ++polarity) {

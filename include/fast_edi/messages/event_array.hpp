@@ -47,6 +47,8 @@ class EventArray {
   WireEvents events() const { return {records_.data(), records_.size() / kWireEventBytes}; }
   /// \pre 0 <= event.t_ns < 2^32 s
   void append(const Event& event) { encodeWireEvent(event, records_); }
+  /// \pre as above, for each of \p count events
+  void append(const Event* events, std::size_t count) { encodeWireEvents(events, count, records_); }
   void assign(const WireEvents& events) {
     records_.assign(events.data, events.data + events.count * kWireEventBytes);
   }
