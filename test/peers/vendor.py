@@ -4,70 +4,27 @@
     build/peers/bin/python test/peers/vendor.py write IN.bag OUT.aedat4 [--compression LZ4|ZSTD|NONE]
                                                  [--frames N] [--window WIDTHxHEIGHT]
     build/peers/bin/python test/peers/vendor.py digest FILE
+    build/peers/bin/python test/peers/vendor.py serve IN.bag --events PORT --frames PORT [--rate FACTOR]
 
 `write` takes mono8 frames, their exposures and the events of a bag with the driver's topics; N frames
 from the beginning, and of these the upper left window. `digest` prints what is in an AEDAT4 file (read
 by the library) or in a bag: counts, and MD5 sums over (time [us], x, y, polarity) of all events and over
-(exposure start, exposure end, pixels) of all frames.
+(exposure start, exposure end, pixels) of all frames. `serve` waits for a client on each port, then sends
+the bag by the library's own server, FACTOR times as fast as recorded (0: as fast as it can), and stays until
+its standard input ends.
 """
 import argparse
-import hashlib
+import os
 import pathlib
 import struct
+import sys
+import time
 
 import dv_processing as dv
 import numpy
 from rosbags.rosbag1 import Reader
 
-EVENT = numpy.dtype([("x", "<u2"), ("y", "<u2"), ("s", "<u4"), ("ns", "<u4"), ("on", "u1")])
-
-
-class Fields:
-    """Numbers and strings of a serialised ROS message, one after the other."""
-
-    def __init__(self, data):
-        self.data = bytes(data)
-        self.place = 0
-
-    def number(self, code="I"):
-        (value,) = struct.unpack_from("<" + code, self.data, self.place)
-        self.place += struct.calcsize(code)
-        return value
-
-    def text(self):
-        size = self.number()
-        self.place += size
-        return self.data[self.place - size:self.place].decode()
-
-    def stamp_us(self):
-        self.number()  # seq
-        return self.number() * 1000000 + (self.number() + 500) // 1000
-
-
-def events_of(data):
-    """Columns t [us], x, y, polarity of an event array, and the sensor's size."""
-    fields = Fields(data)
-    fields.stamp_us()
-    fields.text()
-    height, width, count = fields.number(), fields.number(), fields.number()
-    rows = numpy.frombuffer(fields.data, EVENT, count, fields.place)
-    times = rows["s"].astype(numpy.int64) * 1000000 + (rows["ns"].astype(numpy.int64) + 500) // 1000
-    return (times, rows["x"], rows["y"], rows["on"]), (width, height)
-
-
-def frame_of(data):
-    """Stamp [us] and pixels of a mono8 frame."""
-    fields = Fields(data)
-    stamp = fields.stamp_us()
-    fields.text()
-    height, width, encoding = fields.number(), fields.number(), fields.text()
-    if encoding != "mono8":
-        raise SystemExit(f"a frame with encoding {encoding}, expected mono8")
-    fields.number("B")
-    step, size = fields.number(), fields.number()
-    pixels = numpy.frombuffer(fields.data, numpy.uint8, size, fields.place)
-    return stamp, pixels.reshape(height, step)[:, :width]
-
+from messages import Digest, events_of, frame_of
 
 def items(path):
     """Yields ("events", columns, size) and ("frame", (start, exposure [us], pixels), size)."""
@@ -107,9 +64,7 @@ def write(arguments):
     for kind, item, size in items(arguments.bag):
         item, size = windowed(kind, item, size, window)
         if kind == "events":
-            store = dv.EventStore()
-            for t, x, y, on in zip(*(column.tolist() for column in item)):
-                store.push_back(t, x, y, bool(on))
+            store = store_of(item)
             if len(store) > 0:
                 writer.writeEvents(store)
         else:
@@ -121,27 +76,42 @@ def write(arguments):
             break
 
 
-class Digest:
-    def __init__(self):
-        self.events = self.frames = 0
-        self.event_hash = hashlib.md5()
-        self.frame_hash = hashlib.md5()
+def store_of(columns):
+    store = dv.EventStore()
+    for t, x, y, on in zip(*(column.tolist() for column in columns)):
+        store.push_back(t, x, y, bool(on))
+    return store
 
-    def add_events(self, times, x, y, on):
-        rows = numpy.empty(len(times), numpy.dtype("<i8,<i2,<i2,u1"))
-        for name, column in zip(rows.dtype.names, (times, x, y, on)):
-            rows[name] = column
-        self.events += len(rows)
-        self.event_hash.update(rows.tobytes())
 
-    def add_frame(self, start, exposure, pixels):
-        self.frames += 1
-        self.frame_hash.update(struct.pack("<qq", start, start + exposure))
-        self.frame_hash.update(numpy.ascontiguousarray(pixels).tobytes())
-
-    def __str__(self):
-        return (f"events {self.events} {self.event_hash.hexdigest()}\n"
-                f"frames {self.frames} {self.frame_hash.hexdigest()}")
+def serve(arguments):
+    prepared = []
+    size = None
+    for kind, item, size in items(arguments.bag):
+        if kind == "events":
+            if len(item[0]):
+                prepared.append((int(item[0][-1]), kind, store_of(item)))
+        else:
+            start, exposure, pixels = item
+            prepared.append((start + exposure, kind, dv.Frame(start, exposure, 0, 0, numpy.ascontiguousarray(pixels),
+                                                              dv.FrameSource.SENSOR)))
+    camera = "DAVIS346_00000001"
+    writers = {
+        "events": dv.io.NetworkWriter("127.0.0.1", arguments.events, dv.io.Stream.EventStream(0, "events", camera, size)),
+        "frame": dv.io.NetworkWriter("127.0.0.1", arguments.frames, dv.io.Stream.FrameStream(0, "frames", camera, size))}
+    while any(writer.getClientCount() == 0 for writer in writers.values()):
+        time.sleep(0.01)
+    begin, first = time.monotonic(), prepared[0][0]
+    for t, kind, item in prepared:
+        wait = (t - first) * 1e-6 / arguments.rate - (time.monotonic() - begin) if arguments.rate else 0
+        if wait > 0:
+            time.sleep(wait)
+        if kind == "events":
+            writers[kind].writeEvents(item)
+        else:
+            writers[kind].writeFrame(item)
+    print(f"sent in {time.monotonic() - begin:.3f} s", flush=True)
+    sys.stdin.read()
+    os._exit(0)  # without the library's own end, which may wait for ever for its clients
 
 
 def digest(path):
@@ -174,9 +144,16 @@ def main():
     command.add_argument("--frames", type=int)
     command.add_argument("--window", metavar="WIDTHxHEIGHT")
     commands.add_parser("digest").add_argument("file")
+    command = commands.add_parser("serve")
+    command.add_argument("bag")
+    command.add_argument("--events", type=int, required=True, metavar="PORT")
+    command.add_argument("--frames", type=int, required=True, metavar="PORT")
+    command.add_argument("--rate", type=float, default=1.0, metavar="FACTOR")
     arguments = parser.parse_args()
     if arguments.command == "write":
         write(arguments)
+    elif arguments.command == "serve":
+        serve(arguments)
     else:
         print(digest(arguments.file))
 
