@@ -17,7 +17,7 @@ namespace fast_edi {
 namespace {
 
 /// Arrays that wait for a subscriber in another process: a second, as DV sends them.
-constexpr std::uint32_t kQueue = 100;
+constexpr std::uint32_t kArrayQueue = 100;
 
 #ifdef FAST_EDI_HAVE_DVS_MSGS
 using PublishedArray = dvs_msgs::EventArray;
@@ -46,7 +46,7 @@ void fill(const RecordedEvents& events, PublishedArray& array) {
 EventOutput::EventOutput(ros::NodeHandle nh, std::string frame_id)
     : frame_id_(std::move(frame_id)) {
   ros::AdvertiseOptions options;
-  options.init<PublishedArray>("events", kQueue);
+  options.init<PublishedArray>("events", kArrayQueue);
   // So that roscpp does not number arrays on the wire itself, without the holes.
   options.has_header = false;
   publisher_ = nh.advertise(options);

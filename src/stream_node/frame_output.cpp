@@ -13,7 +13,7 @@ namespace fast_edi {
 namespace {
 
 /// Messages that wait for a subscriber in another process: seconds, at the rate of any camera.
-constexpr std::uint32_t kQueue = 100;
+constexpr std::uint32_t kFrameQueue = 100;
 
 }  // namespace
 
@@ -21,10 +21,10 @@ FrameOutput::FrameOutput(ros::NodeHandle nh, std::string frame_id,
                          std::optional<sensor_msgs::CameraInfo> calibration)
     : frame_id_(std::move(frame_id)),
       calibration_(std::move(calibration)),
-      image_(nh.advertise<sensor_msgs::Image>("image_raw", kQueue)),
-      exposure_(nh.advertise<std_msgs::Int32>("exposure", kQueue)) {
+      image_(nh.advertise<sensor_msgs::Image>("image_raw", kFrameQueue)),
+      exposure_(nh.advertise<std_msgs::Int32>("exposure", kFrameQueue)) {
   if (calibration_) {
-    camera_info_ = nh.advertise<sensor_msgs::CameraInfo>("camera_info", kQueue);
+    camera_info_ = nh.advertise<sensor_msgs::CameraInfo>("camera_info", kFrameQueue);
   }
 }
 

@@ -13,12 +13,12 @@ namespace fast_edi {
 namespace {
 
 /// Messages that wait for a subscriber in another process: a second at 1000 Hz.
-constexpr std::uint32_t kQueue = 1000;
+constexpr std::uint32_t kSampleQueue = 1000;
 
 }  // namespace
 
 ImuOutput::ImuOutput(ros::NodeHandle nh)
-    : publisher_(nh.advertise<sensor_msgs::Imu>("imu", kQueue)) {}
+    : publisher_(nh.advertise<sensor_msgs::Imu>("imu", kSampleQueue)) {}
 
 void ImuOutput::begin(const RecordedStream&) {}
 
@@ -32,7 +32,7 @@ void ImuOutput::add(const RecordingItem& item) {
 }
 
 TriggerOutput::TriggerOutput(ros::NodeHandle nh)
-    : publisher_(nh.advertise<sensor_msgs::TimeReference>("triggers", kQueue)) {}
+    : publisher_(nh.advertise<sensor_msgs::TimeReference>("triggers", kSampleQueue)) {}
 
 void TriggerOutput::begin(const RecordedStream&) {}
 
