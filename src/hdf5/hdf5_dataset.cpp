@@ -20,13 +20,15 @@ constexpr std::size_t kLeastCacheBytes = std::size_t{1} << 20;
 constexpr std::size_t kCacheSlots = 521;
 /// Used chunks are dropped first.
 constexpr double kCachePreemption = 1.0;
-/// No file holds more numbers [bytes] for each byte of its own; deflate reaches 1032.
+/// No file holds more numbers [bytes] for each byte of its own.
 constexpr std::uint64_t kMaxExpansion = 1000;
 /// A small file may have more.
 constexpr std::uint64_t kAnyFileHolds = std::uint64_t{64} << 20;
 /// A compressed chunk is hardly larger than its content.
 constexpr hsize_t kChunkOverhead = 4096;
 constexpr hsize_t kChunkOverheadShare = 16;
+
+constexpr std::size_t kChecksumBytes = 4;
 
 /// Filters by the numbers that are registered for them, and what Debian packages them in.
 struct KnownFilter {
@@ -104,7 +106,7 @@ Hdf5Dataset::Hdf5Dataset(const Hdf5File& file, std::string name)
     H5Sget_simple_extent_dims(space.id(), shape_.data(), nullptr);
   }
   checkShape();
-  checkStorage(creation.id());
+  checkStorage(creation.id(), H5Dget_storage_size(opened.id()));
   // Anew, with room for a whole chunk, which would else be decompressed for each block.
   const Hdf5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
   H5Pset_chunk_cache(access.id(), kCacheSlots, std::max(kLeastCacheBytes, chunk_bytes_),
@@ -139,12 +141,17 @@ void Hdf5Dataset::checkShape() {
   }
 }
 
-void Hdf5Dataset::checkStorage(hid_t creation) {
+void Hdf5Dataset::checkStorage(hid_t creation, std::uint64_t stored) {
   const H5D_layout_t layout = H5Pget_layout(creation);
   if (layout == H5D_VIRTUAL || H5Pget_external_count(creation) > 0) {
     refuse("its data lie in other files, expected them in this one");
   }
   if (layout != H5D_CHUNKED) {
+    const std::uint64_t expected = product(shape_, element_bytes_);
+    // None is stored of what was never written.
+    if (stored != 0 && stored != expected) {
+      refuse("it has " + std::to_string(stored) + " bytes, expected " + std::to_string(expected));
+    }
     return;
   }
   chunk_.resize(shape_.size());
@@ -166,12 +173,12 @@ void Hdf5Dataset::checkStorage(hid_t creation) {
 
 void Hdf5Dataset::checkFilters(hid_t creation) {
   const int count = H5Pget_nfilters(creation);
-  for (int i = 0; i < count; ++i) {
+  for (unsigned i = 0; static_cast<int>(i) < count; ++i) {
     unsigned flags = 0;
     std::size_t values = 0;
     unsigned config = 0;
-    const H5Z_filter_t id = H5Pget_filter2(creation, static_cast<unsigned>(i), &flags, &values,
-                                           nullptr, 0, nullptr, &config);
+    const H5Z_filter_t id =
+        H5Pget_filter2(creation, i, &flags, &values, nullptr, 0, nullptr, &config);
     if (id < 0) {
       refuse("its filters cannot be read (" + hdf5Fault() + ")");
     }
@@ -189,7 +196,11 @@ void Hdf5Dataset::checkFilters(hid_t creation) {
     }
     if (id == H5Z_FILTER_DEFLATE) {
       deflate_ = i;
+    } else if (id == H5Z_FILTER_FLETCHER32) {
+      checksum_ = i;
     }
+    // What others hold only they know.
+    is_checkable_ = is_checkable_ && own && id != H5Z_FILTER_SZIP;
   }
 }
 
@@ -224,7 +235,7 @@ std::string Hdf5Dataset::read(hsize_t first, hsize_t count, hid_t memory, void* 
 
 /// Looks at each chunk that the rows lie in before HDF5 takes memory for it.
 std::string Hdf5Dataset::checkChunks(hsize_t first, hsize_t count) {
-  if (chunk_.empty() || !deflate_ || count == 0) {
+  if (chunk_.empty() || !is_checkable_ || count == 0) {
     return {};
   }
   const hsize_t begin = first / chunk_[0] * chunk_[0];
@@ -247,7 +258,11 @@ std::string Hdf5Dataset::checkChunks(hsize_t first, hsize_t count) {
   }
 }
 
+/// HDF5 itself reads chunks that hold less than they should beyond their end.
 std::string Hdf5Dataset::checkChunk(const std::vector<hsize_t>& offset) {
+  if (offset == checked_chunk_) {
+    return {};
+  }
   hsize_t stored = 0;
   if (H5Dget_chunk_storage_size(dataset_.id(), offset.data(), &stored) < 0) {
     return hdf5Fault();
@@ -257,16 +272,21 @@ std::string Hdf5Dataset::checkChunk(const std::vector<hsize_t>& offset) {
     return where + " has " + std::to_string(stored) + " bytes compressed, expected at most about " +
            std::to_string(chunk_bytes_);
   }
-  if (stored * kMaxExpansion <= kMaxChunkBytes || offset == checked_chunk_) {
-    return {};
+  if (stored == 0) {
+    return {};  // never written
   }
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(stored));
-  std::uint32_t left_out_filters = 0;
-  if (H5Dread_chunk(dataset_.id(), H5P_DEFAULT, offset.data(), &left_out_filters, bytes.data()) <
-      0) {
+  std::uint32_t left_out = 0;
+  if (H5Dread_chunk(dataset_.id(), H5P_DEFAULT, offset.data(), &left_out, bytes.data()) < 0) {
     return hdf5Fault();
   }
-  if ((left_out_filters >> *deflate_ & 1U) == 0 && !inflatesTo(bytes, chunk_bytes_)) {
+  const auto is_applied = [left_out](const std::optional<unsigned>& filter) {
+    return filter && (left_out >> *filter & 1U) == 0;
+  };
+  const std::size_t content =
+      bytes.size() -
+      (is_applied(checksum_) ? std::min(bytes.size(), kChecksumBytes) : std::size_t{0});
+  if (is_applied(deflate_) ? !inflatesTo(bytes, chunk_bytes_) : content != chunk_bytes_) {
     return where + " is damaged: expected " + std::to_string(chunk_bytes_) + " bytes decompressed";
   }
   checked_chunk_ = offset;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,7 +40,7 @@ class Hdf5Dataset {
  private:
   void checkType(hid_t type);
   void checkShape();
-  void checkStorage(hid_t creation);
+  void checkStorage(hid_t creation, std::uint64_t stored);
   void checkFilters(hid_t creation);
   std::string checkChunks(hsize_t first, hsize_t count);
   std::string checkChunk(const std::vector<hsize_t>& offset);
@@ -54,7 +55,9 @@ class Hdf5Dataset {
   bool is_scalar_ = false;
   std::vector<hsize_t> chunk_;  ///< its shape; empty: not in chunks
   std::size_t chunk_bytes_ = 0;
-  std::optional<int> deflate_;          ///< which of the filters that is
+  std::optional<unsigned> deflate_;     ///< which of the filters that is
+  std::optional<unsigned> checksum_;    ///< the same of fletcher32
+  bool is_checkable_ = true;            ///< whether the size of chunks can be found out
   std::vector<hsize_t> checked_chunk_;  ///< the last one that was inflated to learn its size
 };
 

@@ -370,7 +370,8 @@ TEST(Hdf5Damage, OfCompressedEventsIsNamedAndTheOthersAreRead) {
   const RecordingContent content = readAll(*openHdf5(path));
   EXPECT_THAT(content.events, IsEmpty());
   ASSERT_THAT(content.damage, SizeIs(1));
-  EXPECT_THAT(content.damage[0].what, HasSubstr("events 0 to 2435 cannot be read, of x: HDF5: "));
+  EXPECT_THAT(content.damage[0].what,
+              HasSubstr("events 0 to 2435 cannot be read, of x: the chunk at 0 is damaged"));
 }
 
 TEST(Hdf5Damage, OfAnyByteOfColumnsIsSurvived) {
