@@ -14,6 +14,7 @@
 #include "fast_edi/hdf5/hdf5_reader.hpp"
 #include "fuzz/recording_intake.hpp"
 #include "hdf5/hdf5_library.hpp"
+#include "support/temporary_directory.hpp"
 
 namespace {
 
@@ -108,6 +109,9 @@ void fill(FuzzedDataProvider& input, const Hdf5Handle& array, hid_t type,
     }
     bytes *= size;
   }
+  if (bytes == 0) {
+    return;
+  }
   std::vector<std::uint8_t> values = input.ConsumeBytes<std::uint8_t>(bytes);
   values.resize(bytes);
   H5Dwrite(array.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
@@ -122,10 +126,9 @@ void fill(FuzzedDataProvider& input, const Hdf5Handle& array, hid_t type,
   }
 }
 
-void addArray(FuzzedDataProvider& input, const Hdf5Handle& file) {
-  const char* const name = kNames[input.ConsumeIntegralInRange<std::size_t>(0, kNames.size() - 1)];
+void addArray(FuzzedDataProvider& input, const Hdf5Handle& file, const char* name,
+              const std::vector<hsize_t>& shape) {
   const hid_t type = anyType(input);
-  const std::vector<hsize_t> shape = anyShape(input);
   const Hdf5Handle space(
       shape.empty() ? H5Screate(H5S_SCALAR)
                     : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
@@ -154,9 +157,26 @@ void addArray(FuzzedDataProvider& input, const Hdf5Handle& file) {
   }
 }
 
-const fast_edi::fuzzing::MemoryFile& outputFile() {
-  static const fast_edi::fuzzing::MemoryFile file;
-  return file;
+/// Single arrays, or all columns of a layout with as many numbers each.
+void addArrays(FuzzedDataProvider& input, const Hdf5Handle& file) {
+  if (input.ConsumeBool()) {
+    addArray(input, file, kNames[input.ConsumeIntegralInRange<std::size_t>(0, kNames.size() - 1)],
+             anyShape(input));
+    return;
+  }
+  constexpr std::size_t kLayouts = 3;
+  constexpr std::size_t kColumns = 4;  // of a layout; together the first of kNames
+  const std::size_t first = input.ConsumeIntegralInRange<std::size_t>(0, kLayouts - 1) * kColumns;
+  const hsize_t count = input.ConsumeIntegralInRange<hsize_t>(0, 32);
+  for (std::size_t i = first; i < first + kColumns; ++i) {
+    addArray(input, file, kNames[i], {count});
+  }
+}
+
+/// HDF5 writes no file that has no name.
+std::string filePath() {
+  static const fast_edi::TemporaryDirectory directory;
+  return directory.file("fuzz.h5");
 }
 
 }  // namespace
@@ -169,13 +189,13 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   FuzzedDataProvider input(data, size);
   {
-    const Hdf5Handle file(
-        H5Fcreate(outputFile().path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    const Hdf5Handle file(H5Fcreate(filePath().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                          H5Fclose);
     fast_edi::fuzzing::require(static_cast<bool>(file), "HDF5 can write");
     while (input.remaining_bytes() > 0) {
-      addArray(input, file);
+      addArrays(input, file);
     }
   }
-  fast_edi::fuzzing::readTwice([] { return fast_edi::openHdf5(outputFile().path()); });
+  fast_edi::fuzzing::readTwice([] { return fast_edi::openHdf5(filePath()); });
   return 0;
 }
