@@ -44,10 +44,8 @@ void StreamDiagnostics::compare(const StreamReport& now, const StreamStatus& bef
                                                  " place(s) in " + name +
                                                  " could not be read: " + status.damage});
   }
-  if (!status.connected) {
-    complaints_.push_back(
-        {"missing " + name,
-         "no " + name + ": " + (status.fault.empty() ? "connecting" : status.fault)});
+  if (!status.connected && !status.fault.empty()) {
+    complaints_.push_back({"missing " + name, "no " + name + ": " + status.fault});
   }
   if (status.connected && status.connections > before.connections) {
     std::string text = "connected: " + name;
@@ -89,6 +87,11 @@ void StreamDiagnostics::summarise(DiagnosticStatusWrapper& status) const {
     }
   }
   status.summary(DiagnosticStatus::OK, received.empty() ? "receiving nothing" : received);
+  for (const StreamReport& stream : now_.streams) {
+    if (!stream.status.connected && stream.status.fault.empty()) {
+      status.mergeSummary(DiagnosticStatus::WARN, "connecting: " + nameOf(stream));
+    }
+  }
   for (const Complaint& complaint : complaints_) {
     const bool missing = complaint.kind.rfind("missing", 0) == 0;
     status.mergeSummary(missing ? DiagnosticStatus::ERROR : DiagnosticStatus::WARN, complaint.text);
@@ -111,7 +114,9 @@ void StreamDiagnostics::fill(DiagnosticStatusWrapper& wrapper) const {
         i < before_.streams.size() ? before_.streams[i].status : StreamStatus{};
     const std::string kind = toString(stream.kind);
     values.add(kind + ": server", stream.server);
-    values.add(kind + ": connected", status.connected ? "yes" : "no: " + status.fault);
+    values.add(kind + ": connected", status.connected       ? "yes"
+                                     : status.fault.empty() ? "no: connecting"
+                                                            : "no: " + status.fault);
     values.addf(kind + ": rate [1/s]", "%.1f", rate(status.items, before.items));
     values.addf(kind + ": data [MB/s]", "%.3f",
                 rate(status.bytes, before.bytes) / kBytesPerMegabyte);

@@ -103,6 +103,15 @@ TEST_F(StreamDiagnosticsTest, AStreamThatIsMissingIsAnError) {
   EXPECT_EQ(report().level, DiagnosticStatus::ERROR) << "as long as it lasts";
 }
 
+TEST_F(StreamDiagnosticsTest, AFirstAttemptIsNoComplaintYet) {
+  events() = StreamStatus{};
+  const DiagnosticStatusWrapper status = report();
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_THAT(status.message, HasSubstr("connecting: events of 127.0.0.1:7777"));
+  EXPECT_EQ(value(status, "events: connected"), "no: connecting");
+  EXPECT_THAT(diagnostics_.complaints(), IsEmpty()) << "nothing to be logged";
+}
+
 TEST_F(StreamDiagnosticsTest, ARefusedConfigurationIsAnError) {
   StreamSnapshot refused;
   refused.configuration_error = "events_port: found 'x'";
