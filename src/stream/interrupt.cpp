@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <system_error>
+#include <thread>
 
 namespace fast_edi {
 namespace {
@@ -52,7 +53,12 @@ Interrupt::Wait Interrupt::waitFor(int descriptor, short events, milliseconds ti
       return Wait::kTimeout;
     }
     if (errno != EINTR) {
-      throw std::system_error(errno, std::generic_category(), "poll");
+      // The kernel is out of memory: it may have some later. Nobody is told by an exception, since
+      // the threads that wait here must go on.
+      std::this_thread::sleep_for(milliseconds(1));
+      if (steady_clock::now() >= end) {
+        return Wait::kTimeout;
+      }
     }
     waited[0].revents = waited[1].revents = 0;
   }

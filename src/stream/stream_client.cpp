@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -40,10 +41,16 @@ StreamStatus StreamClient::status() const {
   return status_;
 }
 
+std::uint64_t StreamClient::packets() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return status_.packets;
+}
+
+/// Nothing in it throws but what is caught: an exception would end the process.
 void StreamClient::run() {
   milliseconds delay(0);
   while (!interrupt_.waitFor(delay)) {
-    const std::uint64_t packets_before = status().packets;
+    const std::uint64_t packets_before = packets();
     try {
       converse();
     } catch (const StreamStall& stall) {
@@ -51,7 +58,7 @@ void StreamClient::run() {
     } catch (const std::exception& error) {
       noteEnd(error.what(), false);
     }
-    delay = status().packets > packets_before || delay == milliseconds(0)
+    delay = packets() > packets_before || delay == milliseconds(0)
                 ? std::min(kFirstRetry, settings_.max_retry)
                 : std::min(2 * delay, settings_.max_retry);
   }
@@ -151,14 +158,18 @@ void StreamClient::noteConnection(const RecordedStream& stream) {
   status_.stream = stream;
 }
 
-void StreamClient::noteEnd(const std::string& fault, bool stalled) {
+void StreamClient::noteEnd(const char* fault, bool stalled) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  status_.fault = fault;
-  if (status_.connected) {
-    status_.connected = false;
-    status_.cut = fault;
-    ++status_.cuts;
-    status_.stalls += stalled ? 1 : 0;
+  const bool cut = std::exchange(status_.connected, false);
+  status_.cuts += cut ? 1 : 0;
+  status_.stalls += cut && stalled ? 1 : 0;
+  try {
+    status_.fault = fault;
+    if (cut) {
+      status_.cut = fault;
+    }
+  } catch (const std::bad_alloc&) {
+    status_.fault.clear();  // no memory for the reason: the counts have to do
   }
 }
 

@@ -85,7 +85,8 @@ class StreamClient {
   void checkForTls(ClientSocket& socket, PacketFraming& framing);
   void handOn(StreamDecoder& decoder, const PacketFraming& framing);
   void noteConnection(const RecordedStream& stream);
-  void noteEnd(const std::string& fault, bool stalled);
+  void noteEnd(const char* fault, bool stalled);
+  std::uint64_t packets() const;
 
   const StreamSettings settings_;
   StreamSink& sink_;

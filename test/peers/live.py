@@ -3,7 +3,7 @@
 
     /usr/bin/python3 test/peers/live.py IN.bag [--rate FACTOR] [--tools DIRECTORY] [--python PYTHON]
 
-Starts a ROS master, the node, and `vendor.py serve` by PYTHON (build/peers/bin/python). Prints the digest of
+Starts a ROS master, the node, and `vendor.py serve` by PYTHON (build/peers/bin/python). Prints how long the server took to send and the digest of
 vendor.py: counts and MD5 sums of all events and frames that came over the topics `events`, `image_raw`
 and `exposure`. Ends when as much has come as the bag has, or nothing for 20 s.
 """
@@ -14,7 +14,6 @@ import signal
 import socket
 import struct
 import subprocess
-import sys
 import threading
 import time
 
@@ -120,7 +119,7 @@ def main():
                                    "--frames", frames, "--rate", arguments.rate],
                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         processes.append(server)
-        print(server.stdout.readline().strip(), file=sys.stderr)
+        print(server.stdout.readline().strip())
         listener.last = time.monotonic()
         listener.wait(expected)
         print(listener.digest)
