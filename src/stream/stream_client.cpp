@@ -69,15 +69,15 @@ void StreamClient::converse() {
     const std::lock_guard<std::mutex> lock(mutex_);
     ++status_.attempts;
   }
-  ClientSocket socket(settings_.endpoint, settings_.stall_timeout, interrupt_);
+  ClientSocket connection(settings_.endpoint, settings_.stall_timeout, interrupt_);
   PacketFraming framing;
-  if (readUnit(socket, framing) == PacketFraming::Unit::kNone) {
+  if (readUnit(connection, framing) == PacketFraming::Unit::kNone) {
     return;
   }
   StreamDecoder decoder(framing.content(), settings_.kind);
   noteConnection(decoder.stream());
   sink_.begin(decoder.stream());
-  while (readUnit(socket, framing) != PacketFraming::Unit::kNone) {
+  while (readUnit(connection, framing) != PacketFraming::Unit::kNone) {
     handOn(decoder, framing);
   }
 }
