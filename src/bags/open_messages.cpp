@@ -23,7 +23,8 @@ std::unique_ptr<MessageSource> openMessages(const std::string& path, std::int64_
         " is no bag, nor another recording that can be read: it begins neither with \"#ROSBAG "
         "V2.0\" (rosbag) nor with \"#!AER-DAT4.0\" (AEDAT4), \"#!AER-DAT3.1\" or "
         "\"#!AER-DAT2\", nor is it a folder with images.txt, frames.csv or Exposure_start.txt, "
-        "nor a rosbag2 (ROS 2): a folder with *.db3 or *.mcap, or one such file, nor HDF5");
+        "nor a rosbag2 (ROS 2): a folder with *.db3 or *.mcap, or one such file, nor HDF5, nor a "
+        "zip archive");
   }
   return std::make_unique<RecordingMessages>(std::move(recording), array_ns);
 }

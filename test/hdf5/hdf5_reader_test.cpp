@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -354,17 +355,20 @@ TEST(Hdf5Damage, OfCompressedEventsIsNamedAndTheOthersAreRead) {
   const TemporaryDirectory directory;
   const std::string path = directory.file("damaged.h5");
   std::vector<char> bytes = bytesOf(dataFile("e2calib.h5"));
-  hsize_t place = 0;
   {
     const Hdf5Handle file(H5Fopen(dataFile("e2calib.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT),
                           H5Fclose);
     const Hdf5Handle column(H5Dopen2(file.id(), "x", H5P_DEFAULT), H5Dclose);
+    const hsize_t first = 0;
     hsize_t size = 0;
-    unsigned filters = 0;
-    const Hdf5Handle space(H5Dget_space(column.id()), H5Sclose);
-    haddr_t address = 0;
-    ASSERT_GE(H5Dget_chunk_info(column.id(), space.id(), 0, &place, &filters, &address, &size), 0);
-    bytes[address + size / 2] = static_cast<char>(~bytes[address + size / 2]);
+    ASSERT_GE(H5Dget_chunk_storage_size(column.id(), &first, &size), 0);
+    std::vector<char> chunk(size);
+    std::uint32_t filters = 0;
+    ASSERT_GE(H5Dread_chunk(column.id(), H5P_DEFAULT, &first, &filters, chunk.data()), 0);
+    const auto place = std::search(bytes.begin(), bytes.end(), chunk.begin(), chunk.end());
+    ASSERT_NE(place, bytes.end());
+    char& middle = *(place + static_cast<std::ptrdiff_t>(size / 2));
+    middle = static_cast<char>(~middle);
   }
   writeBytes(path, bytes, bytes.size());
   const RecordingContent content = readAll(*openHdf5(path));
