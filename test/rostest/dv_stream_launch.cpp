@@ -36,6 +36,10 @@ using testing::StreamPeer;
 using testing::StreamServer;
 
 constexpr std::size_t kCuts = 10;
+constexpr char kLaunchFile[] = FAST_EDI_SOURCE_DIR "/launch/dv_stream.launch";
+constexpr char kConfig[] = "config:=" FAST_EDI_SOURCE_DIR "/test/rostest/long_timeout.yaml";
+constexpr char kStreamNode[] = FAST_EDI_TOOLS_DIR "/dv_stream_node";
+constexpr char kDeblurNode[] = FAST_EDI_TOOLS_DIR "/deblur_node";
 
 /// A recording whose cameras are served, with nothing that DV's streams do not have.
 RecordingSettings servedSettings(std::int64_t start_s) {
@@ -245,9 +249,8 @@ Processes launchNodelets(const std::string& ns, const std::string& events_port,
                          const std::string& frames_port) {
   Processes processes;
   processes.push_back(std::make_unique<ChildProcess>(std::vector<std::string>{
-      "roslaunch", FAST_EDI_SOURCE_DIR "/launch/dv_stream.launch", "namespace:=" + ns,
-      "events_port:=" + events_port, "frames_port:=" + frames_port, "frame_id:=camera",
-      "stall_timeout_s:=60", "config:=" FAST_EDI_SOURCE_DIR "/test/rostest/long_timeout.yaml"}));
+      "roslaunch", kLaunchFile, "namespace:=" + ns, "events_port:=" + events_port,
+      "frames_port:=" + frames_port, "frame_id:=camera", "stall_timeout_s:=60", kConfig}));
   return processes;
 }
 
@@ -255,12 +258,11 @@ Processes startNodes(const std::string& ns, const std::string& events_port,
                      const std::string& frames_port) {
   Processes processes;
   processes.push_back(std::make_unique<ChildProcess>(std::vector<std::string>{
-      FAST_EDI_TOOLS_DIR "/dv_stream_node", "__ns:=" + ns, "__name:=dv_stream",
-      "_events_port:=" + events_port, "_frames_port:=" + frames_port, "_frame_id:=camera",
-      "_stall_timeout_s:=60"}));
+      kStreamNode, "__ns:=" + ns, "__name:=dv_stream", "_events_port:=" + events_port,
+      "_frames_port:=" + frames_port, "_frame_id:=camera", "_stall_timeout_s:=60"}));
   processes.push_back(std::make_unique<ChildProcess>(std::vector<std::string>{
-      FAST_EDI_TOOLS_DIR "/deblur_node", "__ns:=" + ns, "__name:=deblur",
-      "_close_timeout_ms:=20000", "_contrast_threshold_on:=0.3", "_contrast_threshold_off:=0.25"}));
+      kDeblurNode, "__ns:=" + ns, "__name:=deblur", "_close_timeout_ms:=20000",
+      "_contrast_threshold_on:=0.3", "_contrast_threshold_off:=0.25"}));
   return processes;
 }
 
