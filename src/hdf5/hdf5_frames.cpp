@@ -192,7 +192,7 @@ std::string Hdf5Frames::readPixels(Hdf5Dataset& dataset, std::size_t first_dimen
   }
   const bool wide = sample == 2;
   pixels_.resize(static_cast<std::size_t>(height * width * channels) * sample);
-  const std::string fault =
+  std::string fault =
       dataset.read(first_dimension == 0 ? 0 : row, first_dimension == 0 ? height : 1,
                    wide ? H5T_NATIVE_UINT16 : H5T_NATIVE_UINT8, pixels_.data());
   if (!fault.empty()) {

@@ -29,6 +29,8 @@ constexpr std::array<std::pair<const char*, std::int64_t>, 12> kNames = {
      {"second", kNanosecondsPerSecond},
      {"seconds", kNanosecondsPerSecond}}};
 
+constexpr std::int64_t kLastStamp_us = kLastStamp_ns / kNanosecondsPerMicrosecond;
+
 bool isPlausible(double first, double last, std::int64_t unit_ns) {
   const double seconds = static_cast<double>(unit_ns) / static_cast<double>(kNanosecondsPerSecond);
   return std::abs(last) * seconds < kLastSecond && std::abs(last - first) * seconds <= kLongest;
@@ -52,7 +54,7 @@ std::optional<std::int64_t> timeOf(double time, std::int64_t unit_ns) {
   const double t_us =
       time * (static_cast<double>(unit_ns) / static_cast<double>(kNanosecondsPerMicrosecond));
   // Also refuses what is no number.
-  if (!(t_us >= 0.0 && t_us <= static_cast<double>(kLastStamp_ns / kNanosecondsPerMicrosecond))) {
+  if (!(t_us >= 0.0 && t_us <= static_cast<double>(kLastStamp_us))) {
     return std::nullopt;
   }
   return std::llround(t_us) * kNanosecondsPerMicrosecond;

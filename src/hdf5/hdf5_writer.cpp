@@ -16,7 +16,8 @@ namespace {
 
 double seconds(std::int64_t t_ns) {
   constexpr double kMicrosecondsPerSecond = 1e6;
-  return static_cast<double>(t_ns / kNanosecondsPerMicrosecond) / kMicrosecondsPerSecond;
+  const std::int64_t t_us = t_ns / kNanosecondsPerMicrosecond;
+  return static_cast<double>(t_us) / kMicrosecondsPerSecond;
 }
 
 /// The stream of that kind; null if there is none.

@@ -223,7 +223,7 @@ TEST_F(Hdf5Made, WithTextForNumbersIsRefused) {
 TEST_F(Hdf5Made, WithNanosecondsIsToldByItsFrames) {
   std::vector<std::int64_t> times;
   for (int i = 0; i < 100; ++i) {
-    times.push_back(i * 1'000'000);
+    times.push_back(std::int64_t{i} * 1'000'000);
   }
   addEvents(times);
   addImage("images/a", H5T_NATIVE_UINT16, {8, 8}, std::vector<std::uint16_t>(64, 7), 0.02);
@@ -237,7 +237,7 @@ TEST_F(Hdf5Made, WithNanosecondsIsToldByItsFrames) {
 }
 
 TEST_F(Hdf5Made, FramesInColourAndOfAStackAreReadInTheOrderOfTheirTimes) {
-  std::vector<std::uint8_t> pixels(2 * 2 * 4 * 3);
+  std::vector<std::uint8_t> pixels(std::size_t{2} * 2 * 4 * 3);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     pixels[i] = static_cast<std::uint8_t>(i);
   }
