@@ -24,7 +24,7 @@ constexpr char kCalibration[] =
     "projection_matrix: {rows: 3, cols: 4, data: [240, 0, 170, 0, 0, 241, 130, 0, 0, 0, 1, 0]}\n";
 
 std::string write(const TemporaryDirectory& directory, const std::string& text) {
-  const std::string path = directory.file("calibration.yaml");
+  std::string path = directory.file("calibration.yaml");
   std::ofstream(path) << text;
   return path;
 }
