@@ -15,7 +15,7 @@ FAST_EDI_DEBIAN_BUILD=(
   g++ make cmake catkin
   libroscpp-dev libroslib-dev libnodeletlib-dev libcv-bridge-dev libimage-transport-dev librosbag-dev
   libdynamic-reconfigure-config-init-mutex-dev python3-dynamic-reconfigure libdiagnostic-updater-dev
-  libgeometry-msgs-dev libnav-msgs-dev
+  libgeometry-msgs-dev libnav-msgs-dev libstd-srvs-dev
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
   libvisualization-msgs-dev libapriltag-dev libbz2-dev liblz4-dev libzstd-dev libtinyxml2-dev libsqlite3-dev
   libhdf5-dev libzip-dev zlib1g-dev
@@ -41,7 +41,7 @@ FAST_EDI_NOETIC_BUILD=(
   g++ make cmake ros-noetic-catkin
   ros-noetic-roscpp ros-noetic-roslib ros-noetic-nodelet ros-noetic-cv-bridge ros-noetic-image-transport
   ros-noetic-rosbag ros-noetic-dynamic-reconfigure ros-noetic-diagnostic-updater
-  ros-noetic-geometry-msgs ros-noetic-nav-msgs
+  ros-noetic-geometry-msgs ros-noetic-nav-msgs ros-noetic-std-srvs
   ros-noetic-pluginlib ros-noetic-sensor-msgs ros-noetic-std-msgs ros-noetic-visualization-msgs ros-noetic-apriltag
   libboost-program-options-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libyaml-cpp-dev
   libbz2-dev liblz4-dev libzstd-dev libtinyxml2-dev libsqlite3-dev libhdf5-dev libzip-dev zlib1g-dev

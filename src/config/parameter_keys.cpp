@@ -281,6 +281,12 @@ std::vector<ConfigKey> buildTopLevelKeys() {
       boolKey({"lazy", "", boolText(RosParameters{}.lazy),
                "subscribe to the inputs only while an output image has a subscriber"},
               [](bool value, ParameterDraft& draft) { draft.loaded.ros.lazy = value; }),
+      textKey({"learned_file", "", "\"\"",
+               "where the service `save_learned` writes; a relative path starts at `$ROS_HOME` or "
+               "`~/.ros`, empty is a file with the node's name there"},
+              [](const std::string& value, ParameterDraft& draft) {
+                draft.loaded.ros.learned_file = value;
+              }),
   };
   for (ConfigKey& key : filterKeys()) {
     keys.push_back(live(std::move(key)));

@@ -34,6 +34,12 @@ void CallbackThread::post(std::function<void()> work) {
   queue_.addCallback(boost::make_shared<Work>(std::move(work)));
 }
 
+void CallbackThread::repeat(const ros::NodeHandle& nh, ros::WallDuration period,
+                            std::function<void()> work) {
+  timer_ = handle(nh).createSteadyTimer(
+      period, [work = std::move(work)](const ros::SteadyTimerEvent&) { work(); });
+}
+
 void CallbackThread::start() {
   thread_ = std::thread([this] {
     while (!stopped_) {
@@ -47,6 +53,7 @@ void CallbackThread::stop() {
   if (thread_.joinable()) {
     thread_.join();
   }
+  timer_.stop();
   queue_.disable();
   queue_.clear();
 }

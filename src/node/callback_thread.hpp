@@ -9,6 +9,7 @@
 
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
+#include <ros/steady_timer.h>
 
 namespace fast_edi {
 
@@ -36,6 +37,10 @@ class CallbackThread {
   /// Lets \p work be called in this thread, behind what is queued. From any thread; waits for none.
   void post(std::function<void()> work);
 
+  /// Lets \p work be called in this thread once in each \p period, until stop(). Once.
+  /// \param nh any handle
+  void repeat(const ros::NodeHandle& nh, ros::WallDuration period, std::function<void()> work);
+
   /// From now on callbacks are called, those that are queued already too. Once; nothing after
   /// stop().
   void start();
@@ -48,6 +53,7 @@ class CallbackThread {
   ros::CallbackQueue queue_;
   std::atomic<bool> stopped_{false};
   std::thread thread_;
+  ros::SteadyTimer timer_;
 };
 
 }  // namespace fast_edi

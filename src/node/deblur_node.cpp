@@ -55,8 +55,10 @@ void DeblurNode::start() {
     if (!parameters_->get().ros.lazy) {
       inputs_ = makeInputs();
     }
-    retry_timer_ = callback_thread_.handle(nh_).createSteadyTimer(
-        kRetryPeriod, [this](const ros::SteadyTimerEvent&) { updateInputs(); });
+    learned_service_.emplace(callback_thread_.handle(private_nh_),
+                             learnedFilePath(parameters_->get().ros.learned_file, name_),
+                             [this] { return status(); });
+    callback_thread_.repeat(nh_, kRetryPeriod, [this] { updateInputs(); });
     callback_thread_.post([this] { updateInputs(); });
     callback_thread_.start();
   }
@@ -68,12 +70,12 @@ DeblurNode::~DeblurNode() {
   // Each of these waits for callbacks at work, which may wait for the mutex.
   callback_thread_.stop();
   reconfigure_server_.reset();
+  learned_service_.reset();
   std::unique_ptr<NodeInputs> ended;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ended = std::move(inputs_);
   }
-  retry_timer_.stop();
   ended.reset();
   report_timer_.stop();
   outputs_.shutdown();
@@ -291,6 +293,12 @@ void DeblurNode::publishComparison(const sensor_msgs::Image& image, const Output
   if (!fault.empty()) {
     report_.warnings().warn("comparison", "no comparison picture: " + fault, callback_.start_ns);
   }
+}
+
+DeblurStatus DeblurNode::status() {
+  DeblurStatus status;
+  withLock([&] { status = deblurrer_->status(); });
+  return status;
 }
 
 void DeblurNode::report() {

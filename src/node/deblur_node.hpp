@@ -18,6 +18,7 @@
 #include "fast_edi/messages/message_frame_sink.hpp"
 #include "fast_edi/pipeline/deblurrer.hpp"
 #include "node/callback_thread.hpp"
+#include "node/learned_service.hpp"
 #include "node/node_inputs.hpp"
 #include "node/node_outputs.hpp"
 #include "node/node_report.hpp"
@@ -30,7 +31,8 @@ namespace fast_edi {
 /// to be handled in the order of their arrival, so that queue must call one callback at a time: a
 /// nodelet's getNodeHandle() whatever the number of the manager's worker threads, or ros::spin(). A
 /// queue that calls several at once does no harm beyond that order. Changes of parameters,
-/// subscribers that come and go, and subscribing to the inputs are handled by a CallbackThread.
+/// subscribers that come and go, saving what was learned, and subscribing to the inputs are handled
+/// by a CallbackThread.
 ///
 /// mutex_ guards all members that callbacks use: everything after it. Each callback holds it from
 /// beginning to end. It is needed even with a queue as above, which is still running while the
@@ -92,6 +94,7 @@ class DeblurNode {
   void advanceClock();
   LiveParameters::Values reconfigure(const LiveParameters::Values& wanted);
   void report();
+  DeblurStatus status();
 
   std::size_t maxWaitingEvents() const;
   void deliver(const sensor_msgs::ImagePtr& image, const sensor_msgs::CameraInfoPtr& info,
@@ -119,10 +122,10 @@ class DeblurNode {
   NodeOutputs outputs_;
   Callback callback_;
   ros::SteadyTimer report_timer_;
-  ros::SteadyTimer retry_timer_;
   /// Null while nobody listens; exchanged by the CallbackThread alone.
   std::unique_ptr<NodeInputs> inputs_;
   std::unique_ptr<ReconfigureServer> reconfigure_server_;  ///< none when idle for good
+  std::optional<LearnedService> learned_service_;          ///< none when idle for good
 };
 
 }  // namespace fast_edi

@@ -332,6 +332,7 @@ DeblurStatus Deblurrer::Impl::status() const {
   status.exposure_known = status.last_exposure_ns > 0;
   status.thresholds = parameters_.thresholds;
   status.event_delay_ns = refinement_.eventDelay();
+  status.learned_pairs = refinement_.learnedPairs();
   status.differing_clocks = queue_.differingClocks();
   return status;
 }

@@ -29,6 +29,9 @@ class ParameterRefinement {
   /// The delay of events, part of inForce().time_offset_ns.
   std::int64_t eventDelay() const { return in_force_.time_offset_ns - requested_.time_offset_ns; }
 
+  /// Pairs of frames that inForce() was learned from; 0: it is what was given.
+  int learnedPairs() const { return calibration_ ? calibration_->fits() : 0; }
+
   /// Keeps what was learned unless it would be learned differently now.
   void setParameters(const DeblurParameters& parameters);
   /// Events were lost: discards what was learned and restarts from the given values.

@@ -105,6 +105,17 @@ bool isSane(const DeblurStatus& status) {
          std::isfinite(status.thresholds.off) && status.thresholds.off > 0.0;
 }
 
+/// What lets few frames be deblurred, or takes its time and shows nothing new.
+void temper(LiveParameters::Values& values) {
+  for (const auto& [name, text] : LiveParameters::Values{{"passthrough", "false"},
+                                                         {"time_offset_us", "0"},
+                                                         {"latent_images", "20"},
+                                                         {"close_timeout_ms", "100"},
+                                                         {"exposure_source", "topic"}}) {
+    values[name] = text;
+  }
+}
+
 /// Random values for all keys that a start reads, in random order.
 YAML::Node anyStart(Random& random) {
   std::vector<ParameterDescription> keys = parameterDescriptions();
@@ -115,18 +126,14 @@ YAML::Node anyStart(Random& random) {
       root[key.name] = anyValue(random, key);
     }
   }
-  return root;
-}
-
-/// What lets few frames be deblurred, or takes its time and shows nothing new.
-void temper(LiveParameters::Values& values) {
-  for (const auto& [name, text] : LiveParameters::Values{{"passthrough", "false"},
-                                                         {"time_offset_us", "0"},
-                                                         {"latent_images", "20"},
-                                                         {"close_timeout_ms", "100"},
-                                                         {"exposure_source", "topic"}}) {
-    values[name] = text;
+  if (chance(random, 50)) {
+    LiveParameters::Values tempered;
+    temper(tempered);
+    for (const auto& [name, text] : tempered) {
+      root[name] = text;
+    }
   }
+  return root;
 }
 
 LiveParameters::Values anyChange(Random& random) {

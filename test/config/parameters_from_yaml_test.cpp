@@ -80,6 +80,7 @@ TEST(ParametersFromYaml, DefaultsAreTheCodes) {
   EXPECT_FALSE(loaded.deblur.passthrough);
   EXPECT_EQ(loaded.ros.frame_id, "");
   EXPECT_TRUE(loaded.ros.lazy);
+  EXPECT_EQ(loaded.ros.learned_file, "");
 }
 
 TEST(ParametersFromYaml, ReadsEveryKeyInItsUnit) {
@@ -89,7 +90,7 @@ TEST(ParametersFromYaml, ReadsEveryKeyInItsUnit) {
       "exposure_time_us: 12345\ntime_offset_us: -1.5\nclose_timeout_ms: 50.5\n"
       "max_buffered_events: 1e6\nmax_backward_jump_ms: 20\nmax_forward_jump_ms: 3000\n"
       "latent_images: 8\nresponse_offset_dn: 4.5\nframe_id: davis\npassthrough: true\nlazy: "
-      "false\n");
+      "false\nlearned_file: a.yaml\n");
   EXPECT_EQ(loaded.deblur.thresholds, (ContrastThresholds{0.3, 0.2}));
   EXPECT_EQ(loaded.deblur.weighting, Weighting::kCounter);
   EXPECT_EQ(loaded.deblur.reference, ExposureInstant::kStart);
@@ -106,6 +107,7 @@ TEST(ParametersFromYaml, ReadsEveryKeyInItsUnit) {
   EXPECT_EQ(loaded.ros.frame_id, "davis");
   EXPECT_TRUE(loaded.deblur.passthrough);
   EXPECT_FALSE(loaded.ros.lazy);
+  EXPECT_EQ(loaded.ros.learned_file, "a.yaml");
   EXPECT_EQ(loaded.contrast_origin, "contrast_threshold_on, contrast_threshold_off");
 }
 

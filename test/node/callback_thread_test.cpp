@@ -8,8 +8,12 @@
 #include <vector>
 
 #include <gmock/gmock.h>
+#include <ros/callback_queue.h>
 #include <ros/callback_queue_interface.h>
+#include <ros/node_handle.h>
 #include <boost/make_shared.hpp>
+
+#include "rostest/ros_process.hpp"
 
 namespace fast_edi {
 namespace {
@@ -91,6 +95,32 @@ TEST_F(CallbackThreadTest, CallsWhatIsPostedInOrder) {
   thread_.stop();
   thread_.post([&called] { called.push_back(4); });
   EXPECT_THAT(called, ::testing::ElementsAre(1, 2, 3));
+}
+
+TEST_F(CallbackThreadTest, CallsAgainAndAgainUntilStopped) {
+  test::requireRos();
+  const ros::NodeHandle nh;
+  std::atomic<int> count{0};
+  std::promise<std::thread::id> second;
+  thread_.repeat(nh, ros::WallDuration(0.001), [&] {
+    if (++count == 2) {
+      second.set_value(std::this_thread::get_id());
+    }
+  });
+  thread_.start();
+  EXPECT_NE(second.get_future().get(), std::this_thread::get_id());
+  thread_.stop();
+  const int before = count;
+  ros::CallbackQueue after;
+  ros::NodeHandle other;
+  other.setCallbackQueue(&after);
+  std::atomic<bool> passed{false};
+  const ros::SteadyTimer clock = other.createSteadyTimer(
+      ros::WallDuration(0.02), [&passed](const ros::SteadyTimerEvent&) { passed = true; });
+  while (!passed) {
+    after.callAvailable(ros::WallDuration(0.01));
+  }
+  EXPECT_EQ(count, before);
 }
 
 TEST_F(CallbackThreadTest, StoppingWaitsForTheCallbackAtWork) {

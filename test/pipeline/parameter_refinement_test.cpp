@@ -70,7 +70,9 @@ TEST(ParameterRefinement, PutsLearnedThresholdsInForceUntilTheEventsAreLost) {
   EXPECT_GT(counters.calibration_fits, 0u);
   EXPECT_NE(refinement.inForce().thresholds, given.thresholds);
   EXPECT_EQ(refinement.requested().thresholds, given.thresholds);
+  EXPECT_EQ(static_cast<std::uint64_t>(refinement.learnedPairs()), counters.calibration_fits);
   refinement.reset();
+  EXPECT_EQ(refinement.learnedPairs(), 0);
   EXPECT_EQ(refinement.inForce().thresholds, given.thresholds);
   EXPECT_EQ(refinement.eventDelay(), 0);
   EXPECT_EQ(refinement.neededFrom(INT64_MAX), INT64_MAX);

@@ -112,6 +112,8 @@ class OnlineCalibration {
   std::int64_t neededFrom() const;
   /// To be used for the next frame.
   const Calibration& inForce() const { return in_force_; }
+  /// Pairs of frames that it was learned from.
+  int fits() const { return fits_; }
   std::size_t memoryBytes() const;
 
  private:

@@ -19,8 +19,9 @@ namespace fast_edi {
 
 /// Keys that only the ROS layer uses; the core has no notion of them.
 struct RosParameters {
-  std::string frame_id;  ///< overrides an empty frame_id
-  bool lazy = true;      ///< subscribe to inputs only while an image output is subscribed to
+  std::string frame_id;      ///< overrides an empty frame_id
+  bool lazy = true;          ///< subscribe to inputs only while an image output is subscribed to
+  std::string learned_file;  ///< see learnedFilePath()
 };
 
 struct LoadedParameters {

@@ -41,6 +41,7 @@ struct DeblurStatus {
   std::int64_t last_exposure_ns = 0;
   ContrastThresholds thresholds;    ///< in force: given or learned
   std::int64_t event_delay_ns = 0;  ///< in force: given or learned
+  int learned_pairs = 0;            ///< of frames that these were learned from; 0: given
   /// At the last frame that was passed through for PassReason::kClocksDiffer; zero before.
   ClockPair differing_clocks;
 };
