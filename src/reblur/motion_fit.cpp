@@ -14,7 +14,11 @@ namespace fast_edi {
 namespace {
 
 constexpr std::size_t kParts = ImageMotion::kParts;
-constexpr std::size_t kUnknowns = 2 * kParts;
+constexpr std::size_t kMotionUnknowns = 2 * kParts;
+constexpr std::size_t kShareUnknown = kMotionUnknowns;
+constexpr std::size_t kUnknowns = kMotionUnknowns + 1;
+/// Of a residual: by the parts of the motion, and by the share of events.
+constexpr std::size_t kSlopes = kParts + 1;
 constexpr std::size_t kMostPixels = 1200;
 constexpr std::size_t kFewestPixels = 60;
 constexpr float kLeastCount = 1.5F;  ///< of a chosen pixel
@@ -30,6 +34,8 @@ constexpr float kLeastContrast = 0.1F;
 constexpr double kUsualVelocity_px = 30.0;
 constexpr double kUsualCurvature_px = 10.0;
 constexpr double kUsualTilt_px = 3.0;
+constexpr double kUsualLoss = 0.03;    ///< of the share of events
+constexpr double kMostShare = 1.0;     ///< no sensor invents a change
 constexpr std::size_t kFirstTilt = 4;  ///< of the parts
 /// S is raised by this, halved where n' is kHalfRaised.
 constexpr float kRaise = 0.25F;
@@ -41,6 +47,8 @@ constexpr float kQuarter = 0.25F;
 
 using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+constexpr auto kShareIndex = static_cast<Eigen::Index>(kShareUnknown);
+constexpr auto kMotionRows = static_cast<int>(kMotionUnknowns);
 
 SensorSize halved(SensorSize size) {
   return {size.width / 2, size.height / 2};
@@ -168,7 +176,7 @@ void fillSlopes(const SamplePlanes& planes, std::size_t count, float precision) 
 FAST_EDI_VECTOR_CLONES
 void addProducts(const float* const* planes, std::size_t last, const float* weight,
                  const float* residual, std::size_t count, float* squares, float* product) {
-  FloatBlock sums[kParts] = {};
+  FloatBlock sums[kSlopes] = {};
   FloatBlock with_residual = {};
   for (std::size_t i = 0; i < count; i += kFloatBlock) {
     FloatBlock weighted;
@@ -201,15 +209,15 @@ std::size_t capacityOf(const std::vector<float>* planes, std::size_t count) {
 
 }  // namespace
 
-/// Of the residuals at one instant: J^T W J and J^T W r of B(x) c.
+/// Of the residuals at one instant: J^T W J and J^T W r of B(x) c and the share of events.
 struct MotionFit::Sums {
-  float squares[kParts][kParts] = {};  ///< the lower half
-  float products[kParts] = {};
+  float squares[kSlopes][kSlopes] = {};  ///< the lower half
+  float products[kSlopes] = {};
   float weight = 0.0F;
   float residuals = 0.0F;  ///< weighted squares
 };
 
-/// Normal equations of c1 and c2.
+/// Normal equations of c1, c2 and the share of events.
 struct MotionFit::Equations {
   Matrix matrix = Matrix::Zero();
   Vector right = Vector::Zero();
@@ -219,6 +227,21 @@ struct MotionFit::Equations {
   double variance() const {
     constexpr double kLeast = 1e-6;
     return std::max(kLeast, residuals / std::max(1.0, weight));
+  }
+
+  /// What is to be subtracted from the unknowns; with the share of events held at its bound where
+  /// it would grow beyond.
+  Vector solve(float event_share) const {
+    const Vector change = matrix.ldlt().solve(right);
+    const double to_bound = static_cast<double>(event_share) - kMostShare;
+    if (change[kShareIndex] >= to_bound) {
+      return change;
+    }
+    Vector held;
+    held << matrix.topLeftCorner<kMotionRows, kMotionRows>().ldlt().solve(
+        right.head<kMotionRows>() - to_bound * matrix.col(kShareIndex).head<kMotionRows>()),
+        to_bound;
+    return held;
   }
 };
 
@@ -287,16 +310,18 @@ void MotionFit::loadChosen(const EventChanges& changes, const float* mean_counts
 
 /// Residuals and gradients where the chosen pixels have moved to; weight 0 for what left the image.
 void MotionFit::samplePixels(const Level& level, std::size_t instant, float scale,
-                             const ImageMotion& motion) {
+                             const FittedMotion& fitted) {
+  const ImageMotion& motion = fitted.motion;
   const ImageMotion::Parts c = motion.at(EventChanges::kTau[instant]);
   const auto width = static_cast<std::ptrdiff_t>(level.size.width);
   const auto right = static_cast<float>(level.size.width - 3);
   const auto bottom = static_cast<float>(level.size.height - 3);
   const float per_px = 1.0F / scale;
-  const float half_per_px = kHalf * per_px;
+  const float half_per_px = kHalf * per_px * fitted.event_share;
   const std::vector<float>& change = chosen_.change[instant];
   float* gradient_x = samples_[kGradientX].data();
   float* gradient_y = samples_[kGradientY].data();
+  float* share = samples_[kShare].data();
   float* weight = samples_[kWeight].data();
   float* residual = samples_[kResidual].data();
   for (std::size_t i = 0; i < chosen_.size(); ++i) {
@@ -308,7 +333,7 @@ void MotionFit::samplePixels(const Level& level, std::size_t instant, float scal
     relative_x_[i] = motion.relativeX(at_x);
     relative_y_[i] = motion.relativeY(at_y);
     if (!(x >= 1.0F && y >= 1.0F && x < right && y < bottom)) {
-      gradient_x[i] = gradient_y[i] = weight[i] = residual[i] = 0.0F;
+      gradient_x[i] = gradient_y[i] = share[i] = weight[i] = residual[i] = 0.0F;
       continue;
     }
     const auto left = static_cast<std::ptrdiff_t>(x);
@@ -323,7 +348,8 @@ void MotionFit::samplePixels(const Level& level, std::size_t instant, float scal
       const float over = a + fx * (b - a);
       return over + fy * (d + fx * (e - d) - over);
     };
-    residual[i] = between(upper[0], upper[1], lower[0], lower[1]) - chosen_.value[i] - change[i];
+    share[i] = between(upper[0], upper[1], lower[0], lower[1]) - chosen_.value[i];
+    residual[i] = fitted.event_share * share[i] - change[i];
     gradient_x[i] = half_per_px * between(upper[1] - upper[-1], upper[2] - upper[0],
                                           lower[1] - lower[-1], lower[2] - lower[0]);
     gradient_y[i] = half_per_px * between(lower[0] - above[0], lower[1] - above[1],
@@ -333,7 +359,7 @@ void MotionFit::samplePixels(const Level& level, std::size_t instant, float scal
 }
 
 MotionFit::Sums MotionFit::sumAt(const Level& level, std::size_t instant, float scale,
-                                 const ImageMotion& motion, float spread) {
+                                 const FittedMotion& fitted, float spread) {
   const std::size_t blocks = (chosen_.size() + kFloatBlock - 1) / kFloatBlock;
   const std::size_t count = blocks * kFloatBlock;
   for (std::vector<float>& plane : samples_) {
@@ -342,7 +368,7 @@ MotionFit::Sums MotionFit::sumAt(const Level& level, std::size_t instant, float 
   }
   relative_x_.resize(count);
   relative_y_.resize(count);
-  samplePixels(level, instant, scale, motion);
+  samplePixels(level, instant, scale, fitted);
   fillSlopes({relative_x_.data(), relative_y_.data(), samples_[kGradientX].data(),
               samples_[kGradientY].data(), samples_[kZoom].data(), samples_[kTurn].data(),
               samples_[kTiltX].data(), samples_[kTiltY].data(), samples_[kWeight].data(),
@@ -354,8 +380,8 @@ MotionFit::Sums MotionFit::sumAt(const Level& level, std::size_t instant, float 
     sums.weight += samples_[kWeight][i];
     sums.residuals += samples_[kWeight][i] * residual * residual;
   }
-  std::array<const float*, kParts> planes{};
-  for (std::size_t i = 0; i < kParts; ++i) {
+  std::array<const float*, kSlopes> planes{};
+  for (std::size_t i = 0; i < kSlopes; ++i) {
     planes[i] = samples_[i].data();
     addProducts(planes.data(), i, samples_[kWeight].data(), samples_[kResidual].data(), count,
                 sums.squares[i], &sums.products[i]);
@@ -364,19 +390,22 @@ MotionFit::Sums MotionFit::sumAt(const Level& level, std::size_t instant, float 
 }
 
 MotionFit::Equations MotionFit::linearise(const Level& level, float scale,
-                                          const ImageMotion& motion, float spread) {
+                                          const FittedMotion& fitted, float spread) {
   Equations equations;
   for (std::size_t k = 0; k < EventChanges::kInstants; ++k) {
-    const Sums sums = sumAt(level, k, scale, motion, spread);
+    const Sums sums = sumAt(level, k, scale, fitted, spread);
     const auto tau = static_cast<double>(EventChanges::kTau[k]);
-    const double factors[2] = {tau, tau * tau};  // of c1 and c2
+    const double factors[3] = {tau, tau * tau, 1.0};  // of c1, c2 and the share of events
+    const auto slope_of = [](std::size_t unknown) {
+      return unknown == kShareUnknown ? std::size_t{kShare} : unknown % kParts;
+    };
     for (std::size_t i = 0; i < kUnknowns; ++i) {
-      const std::size_t row = i % kParts;
+      const std::size_t row = slope_of(i);
       const double factor = factors[i / kParts];
       equations.right[static_cast<Eigen::Index>(i)] +=
           factor * static_cast<double>(sums.products[row]);
       for (std::size_t j = 0; j < kUnknowns; ++j) {
-        const std::size_t column = j % kParts;
+        const std::size_t column = slope_of(j);
         const float square = sums.squares[std::max(row, column)][std::min(row, column)];
         equations.matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) +=
             factor * factors[j / kParts] * static_cast<double>(square);
@@ -386,7 +415,12 @@ MotionFit::Equations MotionFit::linearise(const Level& level, float scale,
     equations.residuals += static_cast<double>(sums.residuals);
   }
   const double variance = equations.variance();
-  for (std::size_t i = 0; i < kUnknowns; ++i) {
+  const double share_precision = variance / (kUsualLoss * kUsualLoss);
+  equations.matrix(kShareIndex, kShareIndex) += share_precision;
+  equations.right[kShareIndex] +=
+      share_precision * (static_cast<double>(fitted.event_share) - kMostShare);
+  const ImageMotion& motion = fitted.motion;
+  for (std::size_t i = 0; i < kMotionUnknowns; ++i) {
     const bool is_tilt = i % kParts >= kFirstTilt;
     const double usual = is_tilt      ? kUsualTilt_px
                          : i < kParts ? kUsualVelocity_px
@@ -415,16 +449,16 @@ FittedMotion MotionFit::fit(const float* log_image, const EventChanges& changes,
     const auto scale = static_cast<float>(1u << i);
     double largest = kConverged_px;
     for (int step = 0; step < kMostSteps[i] && largest >= kConverged_px; ++step) {
-      equations =
-          linearise(level, scale, fitted.motion, kSpread[i] * std::max(contrast, kLeastContrast));
-      const Vector change = equations.matrix.ldlt().solve(equations.right);
+      equations = linearise(level, scale, fitted, kSpread[i] * std::max(contrast, kLeastContrast));
+      const Vector change = equations.solve(fitted.event_share);
       for (std::size_t part = 0; part < kParts; ++part) {
         const auto index = static_cast<Eigen::Index>(part);
         fitted.motion.velocity[part] -= static_cast<float>(change[index]);
         fitted.motion.curvature[part] -=
             static_cast<float>(change[index + static_cast<Eigen::Index>(kParts)]);
       }
-      largest = change.cwiseAbs().maxCoeff();
+      fitted.event_share -= static_cast<float>(change[kShareIndex]);
+      largest = change.head<kMotionRows>().cwiseAbs().maxCoeff();
     }
   }
   if (chosen_.size() >= kFewestPixels) {  // of the finest level
@@ -457,9 +491,10 @@ void MotionFit::measure(const Equations& equations, FittedMotion& fitted) const 
       Eigen::Matrix<double, 2, static_cast<int>(kParts)> basis;
       basis << 1.0, 0.0, x, -y, x * x, x * y,  //
           0.0, 1.0, y, x, x * y, y * y;
-      Eigen::Matrix<double, 2, static_cast<int>(kUnknowns)> slope;
+      Eigen::Matrix<double, 2, kMotionRows> slope;
       slope << tau * basis, basis;
-      const Eigen::Matrix2d variance = slope * covariance * slope.transpose();
+      const Eigen::Matrix2d variance =
+          slope * covariance.topLeftCorner<kMotionRows, kMotionRows>() * slope.transpose();
       largest_variance = std::max(largest_variance, 0.5 * variance.trace());
     }
   }

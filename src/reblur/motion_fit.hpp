@@ -4,7 +4,11 @@
 /// Where the latent image L of mid-exposure has moved by u at another instant (ImageMotion), the
 /// log intensity of a pixel has changed by what its events say, S (EventChanges):
 ///
-///     log L(x + u(x, tau)) - log L(x) = S(x, tau)
+///     event_share (log L(x + u(x, tau)) - log L(x)) = S(x, tau)
+///
+/// event_share is 1, or less where the sensor loses events (its pixels have a dead time after each
+/// one): without it motions come out too small then. It stands beside the image rather than divides
+/// S, as no motion and no events at all would be a solution otherwise.
 ///
 /// Gauss-Newton over some 1,200 pixels with events at three instants, coarse to fine on images of a
 /// quarter, half and full resolution. Residuals r count with weight 1 / (1 + (r / spread)^2)^2.
@@ -32,6 +36,7 @@ namespace fast_edi {
 /// What was found.
 struct FittedMotion {
   ImageMotion motion;
+  float event_share = 1.0F;   ///< part of the changes that events tell, at most 1
   float deviation_px = 0.0F;  ///< standard deviation of a displacement, largest in the image
   float path_px = 0.0F;       ///< way from start to middle and on to the end, mean over the image
   float reach_px = 0.0F;      ///< largest displacement
@@ -79,6 +84,7 @@ class MotionFit {
     kTurn,
     kTiltX,
     kTiltY,
+    kShare,
     kWeight,
     kResidual,
     kPlanes
@@ -89,10 +95,10 @@ class MotionFit {
   void load(const float* log_image, const EventChanges& changes, const float* mean_counts);
   void loadChosen(const EventChanges& changes, const float* mean_counts, std::size_t level);
   void samplePixels(const Level& level, std::size_t instant, float scale,
-                    const ImageMotion& motion);
-  Sums sumAt(const Level& level, std::size_t instant, float scale, const ImageMotion& motion,
+                    const FittedMotion& fitted);
+  Sums sumAt(const Level& level, std::size_t instant, float scale, const FittedMotion& fitted,
              float spread);
-  Equations linearise(const Level& level, float scale, const ImageMotion& motion, float spread);
+  Equations linearise(const Level& level, float scale, const FittedMotion& fitted, float spread);
   void measure(const Equations& equations, FittedMotion& fitted) const;
 
   SensorSize size_;

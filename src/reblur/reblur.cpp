@@ -78,8 +78,9 @@ void Reblur::apply(const Frame& frame, const PixelEventLists& lists,
   solver_.solve({frame.blurry_dn, level_dn_.data(), frame.mean_counts, frame.noise_dn, offset_dn},
                 blur_);
   const auto contrast = static_cast<float>(kHalf * (model.thresholds.on + model.thresholds.off));
-  trust_.measure({fitted_.motion, changes_, contrast, frame.noise_dn, offset_dn}, blur_.layout(),
-                 solver_);
+  trust_.measure(
+      {fitted_.motion, changes_, fitted_.event_share, contrast, frame.noise_dn, offset_dn},
+      blur_.layout(), solver_);
   blend();
   scale(level_dn_, dn);
   storePlane(level_dn_.data(), 0, image);

@@ -111,6 +111,13 @@ void fromMask(const std::int32_t* __restrict mask, std::size_t count, float* __r
   }
 }
 
+FAST_EDI_VECTOR_CLONES
+void scaleRow(std::size_t count, float factor, float* __restrict row) {
+  for (std::size_t x = 0; x < count; ++x) {
+    row[x] *= factor;
+  }
+}
+
 /// Means over 2 x 2 pixels.
 FAST_EDI_VECTOR_CLONES
 void halveRow(const float* __restrict upper, const float* __restrict lower, std::size_t count,
@@ -268,6 +275,7 @@ void TrustMap::findContradictions(const Input& input) {
       }
       const float* upper = change + 2 * y * full_width;
       halveRow(upper, upper + full_width, width, row_.data());
+      scaleRow(width, 1.0F / input.event_share, row_.data());
       compareRow(
           {log_scene_.data() + half_.inScene(0, y), log_scene_.data(), half_.sceneStride(),
            row_.data(), could_.data() + y * half_.stride(), does_.data() + y * half_.stride()},

@@ -9,7 +9,8 @@
 ///    (mean square up to 1.3 sigma^2, none from 2 sigma^2 on) nor much less than before (a share of
 ///    0.1 to 0.4 is gone). Detail that is finer than the blur allows is not explained by it.
 /// 2. **Events.** The moved image says how each pixel must have changed from mid-exposure to the
-///    start, the third quarter and the end. Where this or the events exceed a threshold c, and both
+///    start, the third quarter and the end, and so do the events (over the share of them that the
+///    sensor does not lose, see MotionFit). Where one of both exceeds a threshold c, and both
 ///    differ by more than c, 0.3 of the larger one, and half of the difference between the pixels
 ///    around (that is what an error of half a pixel of the motion makes), they contradict. Few such
 ///    pixels are allowed among 6 x 6.
@@ -35,9 +36,10 @@ class TrustMap {
   struct Input {
     const ImageMotion& motion;
     const EventChanges& changes;
-    float contrast = 0.0F;   ///< c
-    float noise_dn = 0.0F;   ///< sigma
-    float offset_dn = 0.0F;  ///< level + offset is proportional to the light
+    float event_share = 1.0F;  ///< part of the changes that events tell, see FittedMotion
+    float contrast = 0.0F;     ///< c
+    float noise_dn = 0.0F;     ///< sigma
+    float offset_dn = 0.0F;    ///< level + offset is proportional to the light
   };
 
   void measure(const Input& input, const SceneLayout& layout, const ResidualSolver& solved);

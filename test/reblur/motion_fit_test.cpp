@@ -46,7 +46,8 @@ double errorOf(const ImageMotion& motion, const SimulationSettings& settings,
 class MotionFitTest : public ::testing::Test {
  protected:
   void fit(const SimulationSettings& settings) {
-    const SimulatedSequence sequence = simulateSequence(settings);
+    SimulatedSequence sequence = simulateSequence(settings);
+    loseSome(sequence.events);
     const SimulatedFrame& frame = sequence.frames.back();
     PixelEventLists lists(kPlaneSize, {});
     lists.keepIntervals(true);
@@ -72,8 +73,23 @@ class MotionFitTest : public ::testing::Test {
     exposure_ = frame.exposure;
   }
 
+  /// Takes out one of so many events, evenly over each pixel's; 0: none.
+  std::size_t lost_one_of_ = 0;
   FittedMotion fitted_;
   ExposureInterval exposure_;
+
+ private:
+  void loseSome(std::vector<Event>& events) const {
+    if (lost_one_of_ == 0) return;
+    std::vector<std::size_t> seen(kPlaneSize.pixelCount());
+    events.erase(std::remove_if(events.begin(), events.end(),
+                                [&](const Event& event) {
+                                  const auto pixel =
+                                      std::size_t{event.y} * kPlaneSize.width + event.x;
+                                  return (++seen[pixel] + pixel) % lost_one_of_ == 0;
+                                }),
+                 events.end());
+  }
 };
 
 TEST_F(MotionFitTest, FindsAPathThatCurves) {
@@ -92,10 +108,25 @@ TEST_F(MotionFitTest, FindsARotation) {
   EXPECT_LT(errorOf(fitted_.motion, settings, exposure_), 0.4);
 }
 
+TEST_F(MotionFitTest, FindsTheSameMotionWhereEventsAreLost) {
+  const SimulationSettings settings = testing::movingPlane(MotionKind::kSpin, 1.0);
+  fit(settings);
+  const float path_px = fitted_.path_px;
+  EXPECT_GT(fitted_.event_share, 0.9F);
+  EXPECT_LE(fitted_.event_share, 1.0F);
+  lost_one_of_ = 4;
+  fit(settings);
+  ASSERT_TRUE(fitted_.found);
+  EXPECT_NEAR(fitted_.event_share, 0.75F, 0.08F);
+  EXPECT_NEAR(fitted_.path_px, path_px, 0.05F * path_px);
+  EXPECT_LT(errorOf(fitted_.motion, settings, exposure_), 0.5);
+}
+
 TEST_F(MotionFitTest, FindsNothingWhereNothingMoves) {
   fit(testing::movingPlane(MotionKind::kStill, 1.0));
   EXPECT_FALSE(fitted_.found);
   EXPECT_EQ(fitted_.path_px, 0.0F);
+  EXPECT_EQ(fitted_.event_share, 1.0F);
 }
 
 }  // namespace

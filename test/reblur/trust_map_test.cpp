@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -128,13 +130,15 @@ class TrustMapTest : public ::testing::Test {
       }
     }
     solver_.solve({blurry.data(), latent.data(), mean_counts.data(), kNoise_dn, kOffset_dn}, blur_);
-    trust_.measure({motion_, changes_, kContrast, kNoise_dn, kOffset_dn}, blur_.layout(), solver_);
+    trust_.measure({motion_, changes_, event_share_, kContrast, kNoise_dn, kOffset_dn},
+                   blur_.layout(), solver_);
   }
 
   static bool isInSquare(int x, int y) { return x >= 30 && x < 62 && y >= 24 && y < 56; }
 
   float trustAt(int x, int y) const { return trust_.trust()[indexOf(x, y, kSize.width)]; }
 
+  float event_share_ = 1.0F;
   ImageMotion motion_;
   MovingBlur blur_;
   EventChanges changes_;
@@ -145,9 +149,9 @@ class TrustMapTest : public ::testing::Test {
 /// As the header says it, in double precision.
 class Reference {
  public:
-  Reference(const ImageMotion& motion, const EventChanges& changes, const SceneLayout& layout,
-            const ResidualSolver& solved)
-      : layout_(layout) {
+  Reference(const ImageMotion& motion, const EventChanges& changes, float event_share,
+            const SceneLayout& layout, const ResidualSolver& solved)
+      : event_share_(static_cast<double>(event_share)), layout_(layout) {
     const auto squares = [&](const std::vector<float>& residual) {
       return boxMeans(planeOf([&](int x, int y) {
                         return meanOf(x, y, [&](int u, int v) {
@@ -212,7 +216,7 @@ class Reference {
       for (int y = 0; y < kHalf.height; ++y) {
         for (int x = 0; x < kHalf.width; ++x) {
           const double said = meanOf(x, y, [&](int u, int v) {
-            return static_cast<double>(changes.at(k)[indexOf(u, v, kSize.width)]);
+            return static_cast<double>(changes.at(k)[indexOf(u, v, kSize.width)]) / event_share_;
           });
           const auto u =
               motion.displacement(2.0F * static_cast<float>(x) + 0.5F,
@@ -264,14 +268,16 @@ class Reference {
     });
   }
 
+  double event_share_;
   SceneLayout layout_;
   Plane trusted_;
 };
 
 TEST_F(TrustMapTest, IsTheOneOfASlowReference) {
-  for (const bool still : {false, true}) {
+  for (const auto& [still, event_share] : {std::pair{false, 1.0F}, {true, 1.0F}, {false, 0.7F}}) {
+    event_share_ = event_share;
     measure(still);
-    const Reference reference(motion_, changes_, blur_.layout(), solver_);
+    const Reference reference(motion_, changes_, event_share, blur_.layout(), solver_);
     int apart = 0;
     int between = 0;
     for (int y = 0; y < 2 * kHalf.height; ++y) {
@@ -297,6 +303,16 @@ TEST_F(TrustMapTest, TrustsWhatMovesAsFitted) {
     sum += static_cast<double>(trust);
   }
   EXPECT_GT(sum / static_cast<double>(kSize.pixelCount()), 0.8);
+}
+
+TEST_F(TrustMapTest, TrustsLessWhereEventsAreSaidToBeLostAndAreNot) {
+  const auto trusted = [this] {
+    measure(false);
+    return std::accumulate(trust_.trust().begin(), trust_.trust().end(), 0.0);
+  };
+  const double all = trusted();
+  event_share_ = 0.5F;
+  EXPECT_LT(trusted(), 0.5 * all);
 }
 
 TEST_F(TrustMapTest, DoesNotTrustWhatStandsStill) {
