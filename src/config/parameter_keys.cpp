@@ -179,6 +179,12 @@ std::vector<ConfigKey> filterKeys() {
               [](bool value, ParameterDraft& draft) {
                 draft.loaded.deblur.filter.frame_noise = value;
               }),
+      numberKey(limits::kFilterFrameNoiseKept, numberText(defaults.frame_noise_kept),
+                "fraction of that noise which stays, and with it texture as faint as the noise, in "
+                "which trackers find corners; 0 = as clean as can be",
+                [](double value, ParameterDraft& draft) {
+                  draft.loaded.deblur.filter.frame_noise_kept = value;
+                }),
       boolKey({"filter_reblur", "", boolText(defaults.reblur),
                "deblur what causes no events, too, by the motion that other pixels' events show; "
                "where that motion does not explain frame and events, nothing changes"},

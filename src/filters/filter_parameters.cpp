@@ -8,6 +8,7 @@ void validate(const FilterParameters& parameters) {
   requireWithin(limits::kFilterGainNoise, parameters.gain.noise);
   requireWithin(limits::kFilterGainSigma, parameters.gain.spatial_sigma_px);
   requireWithin(limits::kFilterGainRestore, parameters.gain.restore);
+  requireWithin(limits::kFilterFrameNoiseKept, parameters.frame_noise_kept);
   requireWithin(limits::kFrameNoise, parameters.frame_noise_dn);
   requireWithin(limits::kFilterTemporal, parameters.temporal);
 }

@@ -35,6 +35,14 @@ void variances(const float* __restrict level, const float* __restrict mean_count
 }
 
 FAST_EDI_VECTOR_CLONES
+void keepPart(const float* __restrict level, std::size_t count, float kept,
+              float* __restrict filtered) {
+  for (std::size_t i = 0; i < count; ++i) {
+    filtered[i] += kept * (level[i] - filtered[i]);
+  }
+}
+
+FAST_EDI_VECTOR_CLONES
 void keepSaturated(const float* __restrict level, std::size_t count, float highest,
                    float* __restrict filtered) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -44,9 +52,10 @@ void keepSaturated(const float* __restrict level, std::size_t count, float highe
 
 }  // namespace
 
-FrameNoiseFilter::FrameNoiseFilter(SensorSize size, PixelFormat format)
+FrameNoiseFilter::FrameNoiseFilter(SensorSize size, PixelFormat format, double kept)
     : size_(size),
       format_(format),
+      kept_(static_cast<float>(kept)),
       filter_(size, filterSettings(format)),
       plane_(size.pixelCount()),
       variance_(size.pixelCount()),
@@ -64,6 +73,7 @@ void FrameNoiseFilter::apply(const ImageView& in, float noise_dn, const float* m
     loadPlane(in, channel, plane_.data());
     variances(plane_.data(), mean_count, pixels, sigma * sigma, variance_.data());
     filter_.apply(plane_.data(), variance_.data(), filtered_.data());
+    keepPart(plane_.data(), pixels, kept_, filtered_.data());
     keepSaturated(plane_.data(), pixels, kMaxLevel_dn * dn, filtered_.data());
     // A weighted mean of levels lies within their range, so nothing needs to be clamped.
     storePlane(filtered_.data(), channel, out);

@@ -32,7 +32,8 @@ void LatentImage::fit(const ImageView& blurry) {
   size_ = blurry.size;
   format_ = blurry.format;
   gain_filter_ = std::make_unique<GainFilter>(size_, parameters_.gain);
-  frame_noise_filter_ = std::make_unique<FrameNoiseFilter>(size_, format_);
+  frame_noise_filter_ =
+      std::make_unique<FrameNoiseFilter>(size_, format_, parameters_.frame_noise_kept);
 }
 
 /// Of several channels the lowest counts: a pixel is saturated where all of them are.

@@ -20,7 +20,7 @@ struct Row {
 };
 
 /// Shares of a value that make a difference that can be seen, and hundredths of weights.
-constexpr std::array<Row, 9> kRows{{
+constexpr std::array<Row, 10> kRows{{
     {limits::kContrastOn.name, SliderScale::kLogarithmic, 0.02},
     {limits::kContrastOff.name, SliderScale::kLogarithmic, 0.02},
     {limits::kExposureTime.name, SliderScale::kLinear, kTimeStep_us},
@@ -28,6 +28,7 @@ constexpr std::array<Row, 9> kRows{{
     {limits::kFilterGainNoise.name, SliderScale::kLogarithmic, 0.05},
     {limits::kFilterGainSigma.name, SliderScale::kLogarithmic, 0.05},
     {limits::kFilterGainRestore.name, SliderScale::kLinear, 0.01},
+    {limits::kFilterFrameNoiseKept.name, SliderScale::kLinear, 0.01},
     {limits::kFilterTemporal.name, SliderScale::kLinear, 0.01},
     {limits::kFrameNoise.name, SliderScale::kLogarithmic, 0.05},
 }};

@@ -174,7 +174,7 @@ void estimateNoise(benchmark::State& state, Exposure& exposure) {
 }
 
 void filterFrameNoise(benchmark::State& state, Exposure& exposure) {
-  FrameNoiseFilter filter(exposure.size, PixelFormat::kMono8);
+  FrameNoiseFilter filter(exposure.size, PixelFormat::kMono8, FilterParameters{}.frame_noise_kept);
   time(
       state, [] {},
       [&] { filter.apply(exposure.blurry, 2.0F, exposure.count.data(), exposure.out()); });

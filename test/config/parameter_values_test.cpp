@@ -105,16 +105,12 @@ bool isSane(const DeblurStatus& status) {
          std::isfinite(status.thresholds.off) && status.thresholds.off > 0.0;
 }
 
-/// What lets few frames be deblurred, or takes its time and shows nothing new.
-void temper(LiveParameters::Values& values) {
-  for (const auto& [name, text] : LiveParameters::Values{{"passthrough", "false"},
-                                                         {"time_offset_us", "0"},
-                                                         {"latent_images", "20"},
-                                                         {"close_timeout_ms", "100"},
-                                                         {"exposure_source", "topic"}}) {
-    values[name] = text;
-  }
-}
+/// Lets frames be deblurred, whatever else is set, and takes no time to show nothing new.
+const LiveParameters::Values kTempered = {{"passthrough", "false"},
+                                          {"time_offset_us", "0"},
+                                          {"latent_images", "20"},
+                                          {"close_timeout_ms", "100"},
+                                          {"exposure_source", "topic"}};
 
 /// Random values for all keys that a start reads, in random order.
 YAML::Node anyStart(Random& random) {
@@ -127,9 +123,7 @@ YAML::Node anyStart(Random& random) {
     }
   }
   if (chance(random, 50)) {
-    LiveParameters::Values tempered;
-    temper(tempered);
-    for (const auto& [name, text] : tempered) {
+    for (const auto& [name, text] : kTempered) {
       root[name] = text;
     }
   }
@@ -144,7 +138,9 @@ LiveParameters::Values anyChange(Random& random) {
     }
   }
   if (chance(random, 80)) {
-    temper(wanted);
+    for (const auto& [name, text] : kTempered) {
+      wanted[name] = text;
+    }
   }
   return wanted;
 }

@@ -27,6 +27,7 @@ struct Image {
 };
 
 constexpr float kNoise_dn = 1.5F;
+constexpr double kKept = 0.0;
 
 std::vector<float> noEvents() {
   return std::vector<float>(kSize.pixelCount());
@@ -53,9 +54,35 @@ TEST(FrameNoiseFilter, LowersReadNoise) {
     byte = static_cast<std::uint8_t>(std::lround(read(random)));
   }
   const double before = noiseOf(image, 100.0);
-  FrameNoiseFilter filter(kSize, PixelFormat::kMono8);
+  FrameNoiseFilter filter(kSize, PixelFormat::kMono8, kKept);
   filter.apply(image.view(), kNoise_dn, noEvents().data(), image.mutableView());
   EXPECT_LT(noiseOf(image, 100.0), 0.5 * before);
+}
+
+TEST(FrameNoiseFilter, KeepsAFractionOfWhatItTakesOut) {
+  Image image(PixelFormat::kMono16);
+  std::mt19937 random(13);
+  std::normal_distribution<double> read(100.0 * kDn16PerDn8, 1.5 * kDn16PerDn8);
+  std::vector<std::uint16_t> levels(kSize.pixelCount());
+  for (std::uint16_t& level : levels) {
+    level = static_cast<std::uint16_t>(std::lround(read(random)));
+  }
+  std::memcpy(image.bytes.data(), levels.data(), image.bytes.size());
+  const auto filtered = [&image](double kept) {
+    Image out(PixelFormat::kMono16);
+    FrameNoiseFilter filter(kSize, PixelFormat::kMono16, kept);
+    filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
+    std::vector<std::uint16_t> values(kSize.pixelCount());
+    std::memcpy(values.data(), out.bytes.data(), out.bytes.size());
+    return values;
+  };
+  const std::vector<std::uint16_t> clean = filtered(0.0);
+  const std::vector<std::uint16_t> half = filtered(0.5);
+  EXPECT_NE(clean, levels);
+  EXPECT_EQ(filtered(1.0), levels);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    EXPECT_NEAR(half[i], 0.5 * (clean[i] + levels[i]), 1.01) << i;
+  }
 }
 
 TEST(FrameNoiseFilter, LeavesEdgesAndSaturatedAreasAsTheyAre) {
@@ -69,7 +96,7 @@ TEST(FrameNoiseFilter, LeavesEdgesAndSaturatedAreasAsTheyAre) {
                   image.step - half);
     }
     Image out(format);
-    FrameNoiseFilter filter(kSize, format);
+    FrameNoiseFilter filter(kSize, format, kKept);
     filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
     EXPECT_EQ(out.bytes, image.bytes) << static_cast<int>(format);
   }
@@ -86,7 +113,7 @@ TEST(FrameNoiseFilter, TakesOutWhatGainsMadeOfNoiseOnlyWhereThereAreEvents) {
   const auto after = [&image](float mean_count) {
     const std::vector<float> counts(kSize.pixelCount(), mean_count);
     Image out(PixelFormat::kMono8);
-    FrameNoiseFilter filter(kSize, PixelFormat::kMono8);
+    FrameNoiseFilter filter(kSize, PixelFormat::kMono8, kKept);
     filter.apply(image.view(), 0.3F, counts.data(), out.mutableView());
     return noiseOf(out, 150.0);
   };
@@ -103,7 +130,7 @@ TEST(FrameNoiseFilter, SaturatedPixelsStay) {
       image.bytes[lamp + i] = 0xFF;
     }
     Image out(format);
-    FrameNoiseFilter filter(kSize, format);
+    FrameNoiseFilter filter(kSize, format, kKept);
     filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
     EXPECT_EQ(out.bytes[lamp], 0xFF);
   }
@@ -115,7 +142,7 @@ TEST(FrameNoiseFilter, ColoursDoNotMix) {
     image.bytes[i] = static_cast<std::uint8_t>(100 + i % 3);
   }
   Image out(PixelFormat::kColour8);
-  FrameNoiseFilter filter(kSize, PixelFormat::kColour8);
+  FrameNoiseFilter filter(kSize, PixelFormat::kColour8, kKept);
   filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
   EXPECT_EQ(out.bytes, image.bytes);
 }
@@ -129,7 +156,7 @@ TEST(FrameNoiseFilter, TheMosaicOfABayerFrameStays) {
     }
   }
   Image out(PixelFormat::kBayer8);
-  FrameNoiseFilter filter(kSize, PixelFormat::kBayer8);
+  FrameNoiseFilter filter(kSize, PixelFormat::kBayer8, kKept);
   filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
   EXPECT_EQ(out.bytes, image.bytes);
 }
@@ -137,7 +164,7 @@ TEST(FrameNoiseFilter, TheMosaicOfABayerFrameStays) {
 TEST(FrameNoiseFilter, ReadsPaddedRowsAndWritesNothingIntoPadding) {
   Image image(PixelFormat::kMono8, 5);
   Image out(PixelFormat::kMono8, 9);
-  FrameNoiseFilter filter(kSize, PixelFormat::kMono8);
+  FrameNoiseFilter filter(kSize, PixelFormat::kMono8, kKept);
   filter.apply(image.view(), kNoise_dn, noEvents().data(), out.mutableView());
   for (int y = 0; y < kSize.height; ++y) {
     for (std::size_t x = static_cast<std::size_t>(kSize.width); x < out.step; ++x) {

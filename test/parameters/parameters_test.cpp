@@ -51,6 +51,7 @@ TEST(Parameters, EveryValueOutOfRangeIsNamed) {
       {"max_forward_jump_ms", [](auto& p) { p.max_forward_jump_ns = 3'600'000'000'001; }},
       {"filter_gain_noise", [](auto& p) { p.filter.gain.noise = 1e-20F; }},
       {"filter_gain_sigma_px", [](auto& p) { p.filter.gain.spatial_sigma_px = 1e-20F; }},
+      {"filter_frame_noise_kept", [](auto& p) { p.filter.frame_noise_kept = 1.1; }},
       {"frame_noise_dn", [](auto& p) { p.filter.frame_noise_dn = 1e-20; }},
       {"max_buffered_events", [](auto& p) { p.max_buffered_events = 0; }},
   };

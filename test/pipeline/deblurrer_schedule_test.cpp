@@ -377,6 +377,7 @@ DeblurParameters anyParameters(Random& random) {
   parameters.filter.gain.despeckle = chance(random, 50);
   parameters.filter.gain.smooth = chance(random, 50);
   parameters.filter.frame_noise = chance(random, 50);
+  parameters.filter.frame_noise_kept = 0.1 * static_cast<double>(uniform(random, 0, 10));
   parameters.filter.frame_noise_dn = static_cast<double>(uniform(random, 1, 5));
   parameters.filter.reblur = chance(random, 50);
   parameters.filter.motion = chance(random, 50);

@@ -69,6 +69,7 @@ TEST_F(ReconstructionTest, VideoIsWrittenWhereItIsSetAndWanted) {
 
 TEST_F(ReconstructionTest, ShowsWhatReblurringTrusts) {
   parameters.filter.enabled = true;
+  parameters.filter.reblur = false;
   render();
   EXPECT_TRUE(sink.trust_maps.empty());
   parameters.filter.reblur = true;

@@ -56,6 +56,7 @@ constexpr ParameterRange kLevelRampFraction{"level_ramp_fraction", "", {0.0, 1.0
 constexpr ParameterRange kFilterGainNoise{"filter_gain_noise", "contrast thresholds", {0.01, 10.0}};
 constexpr ParameterRange kFilterGainSigma{"filter_gain_sigma_px", "px", {0.1, 10.0}};
 constexpr ParameterRange kFilterGainRestore{"filter_gain_restore", "", {0.0, 1.0}};
+constexpr ParameterRange kFilterFrameNoiseKept{"filter_frame_noise_kept", "", {0.0, 1.0}};
 constexpr ParameterRange kFilterTemporal{"filter_temporal", "", {0.0, 0.9}};
 constexpr ParameterRange kFrameNoise{"frame_noise_dn", "8-bit DN", {0.01, 50.0, true}};
 constexpr ParameterRange kResponseOffset{"response_offset_dn", "DN", {0.0, 255.0}};

@@ -7,6 +7,9 @@
 ///
 ///     s^2 = (1.5 s_B)^2 + (0.02 J)^2 min(1, n') (1 + n' / 3)
 ///
+/// A fraction of what it takes out stays: texture as faint as the noise goes with the noise, and
+/// feature trackers, whose thresholds are relative, lose its corners.
+///
 /// Where there are no events, only the frame's own noise is taken out. Saturated levels are lower
 /// bounds rather than measurements and stay. Colours are filtered by themselves: channels of
 /// interleaved images apart, a Bayer mosaic among photosites of one colour.
@@ -21,7 +24,8 @@ namespace fast_edi {
 
 class FrameNoiseFilter {
  public:
-  FrameNoiseFilter(SensorSize size, PixelFormat format);
+  /// \param kept fraction of the noise that stays, 0 to 1
+  FrameNoiseFilter(SensorSize size, PixelFormat format, double kept);
 
   /// \param noise_dn standard deviation of the blurry frame's noise [8-bit DN], > 0
   /// \param mean_count of events about each pixel, width x height values
@@ -37,6 +41,7 @@ class FrameNoiseFilter {
  private:
   SensorSize size_;
   PixelFormat format_;
+  float kept_;
   NonLocalMeans filter_;
   std::vector<float> plane_;
   std::vector<float> variance_;
