@@ -35,10 +35,10 @@ void variances(const float* __restrict level, const float* __restrict mean_count
 }
 
 FAST_EDI_VECTOR_CLONES
-void keepPart(const float* __restrict level, std::size_t count, float kept,
-              float* __restrict filtered) {
+void keepPart(const float* __restrict clean, std::size_t count, float kept,
+              float* __restrict level) {
   for (std::size_t i = 0; i < count; ++i) {
-    filtered[i] += kept * (level[i] - filtered[i]);
+    level[i] = clean[i] + kept * (level[i] - clean[i]);
   }
 }
 
@@ -59,7 +59,7 @@ FrameNoiseFilter::FrameNoiseFilter(SensorSize size, PixelFormat format, double k
       filter_(size, filterSettings(format)),
       plane_(size.pixelCount()),
       variance_(size.pixelCount()),
-      filtered_(size.pixelCount()) {}
+      clean_(size.pixelCount()) {}
 
 void FrameNoiseFilter::apply(const ImageView& in, float noise_dn, const float* mean_count,
                              const MutableImageView& out) {
@@ -72,11 +72,11 @@ void FrameNoiseFilter::apply(const ImageView& in, float noise_dn, const float* m
   for (int channel = 0; channel < channels(format_); ++channel) {
     loadPlane(in, channel, plane_.data());
     variances(plane_.data(), mean_count, pixels, sigma * sigma, variance_.data());
-    filter_.apply(plane_.data(), variance_.data(), filtered_.data());
-    keepPart(plane_.data(), pixels, kept_, filtered_.data());
-    keepSaturated(plane_.data(), pixels, kMaxLevel_dn * dn, filtered_.data());
+    filter_.apply(plane_.data(), variance_.data(), clean_.data());
+    keepSaturated(plane_.data(), pixels, kMaxLevel_dn * dn, clean_.data());
+    keepPart(clean_.data(), pixels, kept_, plane_.data());
     // A weighted mean of levels lies within their range, so nothing needs to be clamped.
-    storePlane(filtered_.data(), channel, out);
+    storePlane(plane_.data(), channel, out);
   }
 }
 

@@ -39,9 +39,10 @@ void Reconstruction::render(const Frame& frame, WindowIntegral& integral, const 
     latent_image_.write(input.image, integral.gains().data(), counts, parameters.response, image);
     if (filter.enabled && filter.reblur && parameters.reference == ExposureInstant::kMid &&
         Reblur::supports(image.format, parameters.response)) {
-      reblur_.apply({frame.window, latent_image_.blurryLevels().data(), latent_image_.meanCounts(),
-                     latent_image_.frameNoise(), integral.counts().data()},
-                    lists, model, parameters.response, image);
+      reblur_.apply(
+          {frame.window, latent_image_.blurryLevels().data(), latent_image_.meanCounts(),
+           latent_image_.frameNoise(), integral.counts().data(), latent_image_.cleanLevels()},
+          lists, model, parameters.response, image);
       sink_.noteTrust(reblur_.trust());
     }
   }

@@ -34,8 +34,15 @@ constexpr float kLeastContrast = 0.1F;
 constexpr double kUsualVelocity_px = 30.0;
 constexpr double kUsualCurvature_px = 10.0;
 constexpr double kUsualTilt_px = 3.0;
-constexpr double kUsualLoss = 0.03;    ///< of the share of events
-constexpr double kMostShare = 1.0;     ///< no sensor invents a change
+constexpr double kUsualLoss = 0.03;  ///< of the share of events
+constexpr double kMostShare = 1.0;   ///< no sensor invents a change
+/// A share above the first is not worth a fit of its own; one below the second says that the image
+/// is noisy rather than that events are lost.
+constexpr float kNoneLost = 0.97F;
+constexpr float kLeastShare = 0.75F;
+constexpr int kFreeSteps = 3;
+/// Variance of the residuals that a share must leave, of that without.
+constexpr double kClearlyLess = 0.9;
 constexpr std::size_t kFirstTilt = 4;  ///< of the parts
 /// S is raised by this, halved where n' is kHalfRaised.
 constexpr float kRaise = 0.25F;
@@ -234,14 +241,16 @@ struct MotionFit::Equations {
   Vector solve(float event_share) const {
     const Vector change = matrix.ldlt().solve(right);
     const double to_bound = static_cast<double>(event_share) - kMostShare;
-    if (change[kShareIndex] >= to_bound) {
-      return change;
-    }
-    Vector held;
-    held << matrix.topLeftCorner<kMotionRows, kMotionRows>().ldlt().solve(
-        right.head<kMotionRows>() - to_bound * matrix.col(kShareIndex).head<kMotionRows>()),
-        to_bound;
-    return held;
+    return change[kShareIndex] < to_bound ? solveHeld(to_bound) : change;
+  }
+
+  /// The same with a given change of the share of events.
+  Vector solveHeld(double share_change) const {
+    Vector change;
+    change << matrix.topLeftCorner<kMotionRows, kMotionRows>().ldlt().solve(
+        right.head<kMotionRows>() - share_change * matrix.col(kShareIndex).head<kMotionRows>()),
+        share_change;
+    return change;
   }
 };
 
@@ -433,12 +442,47 @@ MotionFit::Equations MotionFit::linearise(const Level& level, float scale,
   return equations;
 }
 
+/// Subtracts a step of Gauss-Newton.
+double MotionFit::step(const Equations& equations, bool share_is_free, FittedMotion& fitted) {
+  const Vector change =
+      share_is_free ? equations.solve(fitted.event_share) : equations.solveHeld(0.0);
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const auto index = static_cast<Eigen::Index>(part);
+    fitted.motion.velocity[part] -= static_cast<float>(change[index]);
+    fitted.motion.curvature[part] -=
+        static_cast<float>(change[index + static_cast<Eigen::Index>(kParts)]);
+  }
+  fitted.event_share -= static_cast<float>(change[kShareIndex]);
+  return change.head<kMotionRows>().cwiseAbs().maxCoeff();
+}
+
+/// Frees the share of events, and keeps what comes of it where it explains clearly more.
+/// \param equations of fitted at the finest level; of the result when it returns
+void MotionFit::findLostEvents(float spread, Equations& equations, FittedMotion& fitted) {
+  FittedMotion freed = fitted;
+  Equations freed_equations = equations;
+  for (int i = 0; i < kFreeSteps; ++i) {
+    step(freed_equations, true, freed);
+    if (freed.event_share > kNoneLost) {
+      return;
+    }
+    freed_equations = linearise(levels_.front(), 1.0F, freed, spread);
+  }
+  if (freed.event_share >= kLeastShare &&
+      freed_equations.variance() < kClearlyLess * equations.variance()) {
+    fitted = freed;
+    equations = freed_equations;
+  }
+}
+
 FittedMotion MotionFit::fit(const float* log_image, const EventChanges& changes,
                             const float* mean_counts, float contrast) {
   load(log_image, changes, mean_counts);
   FittedMotion fitted;
   fitted.motion = ImageMotion(size_);
-  Equations equations;
+  const auto spread_at = [contrast](std::size_t level) {
+    return kSpread[level] * std::max(contrast, kLeastContrast);
+  };
   for (std::size_t i = kLevels; i-- > 0;) {
     const Level& level = levels_[i];
     choosePixels(level.size, i == 0 ? mean_counts : level.count.data(), chosen_.pixel);
@@ -448,29 +492,24 @@ FittedMotion MotionFit::fit(const float* log_image, const EventChanges& changes,
     loadChosen(changes, mean_counts, i);
     const auto scale = static_cast<float>(1u << i);
     double largest = kConverged_px;
-    for (int step = 0; step < kMostSteps[i] && largest >= kConverged_px; ++step) {
-      equations = linearise(level, scale, fitted, kSpread[i] * std::max(contrast, kLeastContrast));
-      const Vector change = equations.solve(fitted.event_share);
-      for (std::size_t part = 0; part < kParts; ++part) {
-        const auto index = static_cast<Eigen::Index>(part);
-        fitted.motion.velocity[part] -= static_cast<float>(change[index]);
-        fitted.motion.curvature[part] -=
-            static_cast<float>(change[index + static_cast<Eigen::Index>(kParts)]);
-      }
-      fitted.event_share -= static_cast<float>(change[kShareIndex]);
-      largest = change.head<kMotionRows>().cwiseAbs().maxCoeff();
+    for (int n = 0; n < kMostSteps[i] && largest >= kConverged_px; ++n) {
+      largest = step(linearise(level, scale, fitted, spread_at(i)), false, fitted);
     }
   }
   if (chosen_.size() >= kFewestPixels) {  // of the finest level
+    Equations equations = linearise(levels_.front(), 1.0F, fitted, spread_at(0));
+    findLostEvents(spread_at(0), equations, fitted);
     measure(equations, fitted);
   }
   return fitted;
 }
 
-/// Over corners and centre of the image at start and end.
+/// Over corners and centre of the image at start and end; the share of events is taken for exact.
 void MotionFit::measure(const Equations& equations, FittedMotion& fitted) const {
-  const Matrix covariance =
-      kCorrelated * equations.variance() * equations.matrix.ldlt().solve(Matrix::Identity());
+  using MotionMatrix = Eigen::Matrix<double, kMotionRows, kMotionRows>;
+  const MotionMatrix precision = equations.matrix.topLeftCorner<kMotionRows, kMotionRows>();
+  const MotionMatrix covariance =
+      kCorrelated * equations.variance() * precision.ldlt().solve(MotionMatrix::Identity());
   const auto right = static_cast<float>(size_.width - 1);
   const auto bottom = static_cast<float>(size_.height - 1);
   const std::array<Displacement, 5> places = {{{0.0F, 0.0F},
@@ -493,8 +532,7 @@ void MotionFit::measure(const Equations& equations, FittedMotion& fitted) const 
           0.0, 1.0, y, x, x * y, y * y;
       Eigen::Matrix<double, 2, kMotionRows> slope;
       slope << tau * basis, basis;
-      const Eigen::Matrix2d variance =
-          slope * covariance.topLeftCorner<kMotionRows, kMotionRows>() * slope.transpose();
+      const Eigen::Matrix2d variance = slope * covariance * slope.transpose();
       largest_variance = std::max(largest_variance, 0.5 * variance.trace());
     }
   }

@@ -8,7 +8,9 @@
 ///
 /// event_share is 1, or less where the sensor loses events (its pixels have a dead time after each
 /// one): without it motions come out too small then. It stands beside the image rather than divides
-/// S, as no motion and no events at all would be a solution otherwise.
+/// S, as no motion and no events at all would be a solution otherwise. It is fitted last, and used
+/// where it leaves less than 0.9 of the residuals' variance and is at least 0.75: noise of the
+/// image makes it small, too, but explains little.
 ///
 /// Gauss-Newton over some 1,200 pixels with events at three instants, coarse to fine on images of a
 /// quarter, half and full resolution. Residuals r count with weight 1 / (1 + (r / spread)^2)^2.
@@ -16,8 +18,8 @@
 /// quarter where a pixel has few events, as GainFilter does it with gains. Without this all motions
 /// come out a tenth too small.
 ///
-/// Deviation. From the normal equations at the end; neighbouring pixels are not independent, and
-/// their number counts as a quarter.
+/// Deviation. From the normal equations at the end, given the share of events; neighbouring pixels
+/// are not independent, and their number counts as a quarter.
 ///
 /// Complexity. O(pixels) for the three levels, then O(1,200 * instants * steps).
 #pragma once
@@ -99,6 +101,8 @@ class MotionFit {
   Sums sumAt(const Level& level, std::size_t instant, float scale, const FittedMotion& fitted,
              float spread);
   Equations linearise(const Level& level, float scale, const FittedMotion& fitted, float spread);
+  static double step(const Equations& equations, bool share_is_free, FittedMotion& fitted);
+  void findLostEvents(float spread, Equations& equations, FittedMotion& fitted);
   void measure(const Equations& equations, FittedMotion& fitted) const;
 
   SensorSize size_;

@@ -14,6 +14,8 @@ constexpr float kShortestPath_px = 1.5F;
 /// The margin of the scene is not made larger.
 constexpr float kLongestReach_px = 40.0F;
 constexpr float kLargestDeviation_px = 0.4F;
+/// Of the path: a blur that is taken for longer than it is gets sharpened too much.
+constexpr float kLargestDeviation = 0.08F;
 /// Instants of the blur: one for so much of the path.
 constexpr float kInstantsApart_px = 2.5F;
 constexpr float kFewestInstants = 4.0F;
@@ -24,7 +26,8 @@ constexpr int kSmallestSide_px = 32;
 
 bool isUsable(const FittedMotion& fitted) {
   return fitted.found && fitted.path_px >= kShortestPath_px &&
-         fitted.reach_px <= kLongestReach_px && fitted.deviation_px <= kLargestDeviation_px;
+         fitted.reach_px <= kLongestReach_px && fitted.deviation_px <= kLargestDeviation_px &&
+         fitted.deviation_px <= kLargestDeviation * fitted.path_px;
 }
 
 std::size_t instantsFor(float path_px) {
@@ -67,8 +70,10 @@ void Reblur::apply(const Frame& frame, const PixelEventLists& lists,
   trust_.clear(size_);
   const auto dn = static_cast<float>(dnPerDn8(image.format));
   const auto offset_dn = static_cast<float>(response.offsetDn());
-  level_dn_.resize(size_.pixelCount());
-  loadPlane({image.data, image.size, image.step, image.format}, 0, level_dn_.data());
+  blended_.resize(size_.pixelCount());
+  loadPlane({image.data, image.size, image.step, image.format}, 0, blended_.data());
+  const float* levels = frame.clean_dn != nullptr ? frame.clean_dn : blended_.data();
+  level_dn_.assign(levels, levels + blended_.size());
   scale(level_dn_, 1.0F / dn);
   fitMotion(frame, lists, model, offset_dn);
   if (!isUsable(fitted_)) {
@@ -81,24 +86,23 @@ void Reblur::apply(const Frame& frame, const PixelEventLists& lists,
   trust_.measure(
       {fitted_.motion, changes_, fitted_.event_share, contrast, frame.noise_dn, offset_dn},
       blur_.layout(), solver_);
-  blend();
-  scale(level_dn_, dn);
-  storePlane(level_dn_.data(), 0, image);
+  blend(dn);
+  storePlane(blended_.data(), 0, image);
 }
 
-/// Adds the correction as far as it is trusted. Where it is not at all, levels stay whole numbers
-/// of the image's own unit, whose bits come back.
-void Reblur::blend() {
+/// Moves the image to the solution as far as that is trusted. Noise that stayed in the image goes
+/// there: the solution has its own. Where it is not trusted at all, levels stay whole numbers of
+/// the image's own unit, whose bits come back.
+void Reblur::blend(float dn) {
   const SceneLayout& layout = blur_.layout();
   const auto width = static_cast<std::size_t>(size_.width);
   for (std::size_t y = 0; y < layout.rows(); ++y) {
-    const float* given = solver_.given().data() + layout.inScene(0, y);
     const float* solution = solver_.solution().data() + layout.inScene(0, y);
     const float* trust = trust_.trust().data() + y * width;
-    float* level = level_dn_.data() + y * width;
+    float* level = blended_.data() + y * width;
     for (std::size_t x = 0; x < width; ++x) {
-      const float moved = level[x] + trust[x] * (solution[x] - given[x]);
-      level[x] = std::clamp(moved, 0.0F, kMaxDn8);
+      const float moved = level[x] + trust[x] * (dn * solution[x] - level[x]);
+      level[x] = std::clamp(moved, 0.0F, kMaxDn8 * dn);
     }
   }
 }
@@ -106,7 +110,7 @@ void Reblur::blend() {
 std::size_t Reblur::memoryBytes() const {
   return changes_.memoryBytes() + (fit_ ? fit_->memoryBytes() : 0) + blur_.memoryBytes() +
          solver_.memoryBytes() + trust_.memoryBytes() +
-         (level_dn_.capacity() + log_.capacity()) * sizeof(float);
+         (level_dn_.capacity() + blended_.capacity() + log_.capacity()) * sizeof(float);
 }
 
 }  // namespace fast_edi

@@ -40,6 +40,9 @@ class Reblur {
     const float* mean_counts = nullptr;     ///< events of each pixel, mean over 3 x 3 pixels
     float noise_dn = 0.0F;                  ///< standard deviation [8-bit DN]
     const std::uint16_t* counts = nullptr;  ///< OFF and ON events of each pixel, interleaved
+    /// Levels of the latent image without the noise that stays in it, row-major [DN of the image];
+    /// null: as in the image.
+    const float* clean_dn = nullptr;
   };
 
   static bool supports(PixelFormat format, const CameraResponse& response) {
@@ -61,7 +64,7 @@ class Reblur {
  private:
   void fitMotion(const Frame& frame, const PixelEventLists& lists, const LatentGains::Model& model,
                  float offset_dn);
-  void blend();
+  void blend(float dn);
 
   SensorSize size_;
   EventChanges changes_;
@@ -71,6 +74,7 @@ class Reblur {
   ResidualSolver solver_;
   TrustMap trust_;
   std::vector<float> level_dn_;
+  std::vector<float> blended_;  ///< [DN of the image]
   std::vector<float> log_;
 };
 

@@ -104,17 +104,14 @@ class DiscBeforeWall {
   DavisSimulator stones_;
 };
 
-/// The last frame of a sequence, deblurred.
+/// A sequence, deblurred.
 /// \param factor given thresholds over true ones
-inline std::vector<std::uint8_t> lastImage(const SimulatedSequence& sequence,
-                                           const SimulationSettings& settings, bool reblur,
-                                           double factor = 1.0) {
-  DeblurParameters parameters;
+inline RecordingSink deblur(const SimulatedSequence& sequence, const SimulationSettings& settings,
+                            DeblurParameters parameters, double factor = 1.0) {
   parameters.thresholds = {factor * settings.sensor.thresholds.on,
                            factor * settings.sensor.thresholds.off};
   parameters.exposure_source = ExposureSource::kParameter;
   parameters.exposure_time_ns = settings.timing.exposure_us * kNanosecondsPerMicrosecond;
-  parameters.filter.reblur = reblur;
   RecordingSink sink;
   Deblurrer deblurrer(parameters, sink);
   deblurrer.addEvents(sequence.events.data(), sequence.events.size(), kPlaneSize, 0);
@@ -124,7 +121,15 @@ inline std::vector<std::uint8_t> lastImage(const SimulatedSequence& sequence,
                        0);
   }
   deblurrer.finish();
-  return sink.outputs.back().pixels;
+  return sink;
+}
+
+inline std::vector<std::uint8_t> lastImage(const SimulatedSequence& sequence,
+                                           const SimulationSettings& settings, bool reblur,
+                                           double factor = 1.0) {
+  DeblurParameters parameters;
+  parameters.filter.reblur = reblur;
+  return deblur(sequence, settings, parameters, factor).outputs.back().pixels;
 }
 
 inline double psnrOf(const std::vector<std::uint8_t>& pixels, const cv::Mat& truth) {

@@ -1,5 +1,6 @@
 #include "reblur/reblur.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -10,6 +11,7 @@
 namespace fast_edi {
 namespace {
 
+using testing::kPlaneSize;
 using testing::lastImage;
 using testing::movingPlane;
 using testing::psnrOf;
@@ -49,14 +51,37 @@ TEST(ReblurTest, AStillBackgroundBehindAMovingDiscIsNotSharpened) {
   EXPECT_GT(gain.db, -0.1);
   constexpr int kBehind_px = 100;  // the disc has not come there yet
   int changed = 0;
-  for (int y = 0; y < testing::kPlaneSize.height; ++y) {
-    for (int x = kBehind_px + 25; x < testing::kPlaneSize.width; ++x) {
-      const auto i =
-          static_cast<std::size_t>(y) * testing::kPlaneSize.width + static_cast<std::size_t>(x);
+  for (int y = 0; y < kPlaneSize.height; ++y) {
+    for (int x = kBehind_px + 25; x < kPlaneSize.width; ++x) {
+      const auto i = static_cast<std::size_t>(y) * kPlaneSize.width + static_cast<std::size_t>(x);
       changed += std::abs(gain.with[i] - gain.without[i]) > 2 ? 1 : 0;
     }
   }
   EXPECT_LT(changed, 20);
+}
+
+/// What is trusted has the noise that the solution leaves, not what was to stay besides.
+TEST(ReblurTest, NoiseStaysOnlyWhereTheSolutionIsNotTrusted) {
+  const SimulationSettings settings = movingPlane(MotionKind::kShake, 1.0);
+  const SimulatedSequence sequence = simulateSequence(settings);
+  const auto deblurred = [&](bool reblur, double noise_kept) {
+    DeblurParameters parameters;
+    parameters.filter.reblur = reblur;
+    parameters.filter.frame_noise_kept = noise_kept;
+    return testing::deblur(sequence, settings, parameters);
+  };
+  const testing::RecordingSink clean = deblurred(true, 0.0);
+  const testing::RecordingSink noisy = deblurred(true, 1.0);
+  const std::vector<float>& trust = clean.trust_maps.back();
+  EXPECT_EQ(noisy.trust_maps.back(), trust);
+  EXPECT_GT(std::count(trust.begin(), trust.end(), 1.0F), 1000);
+  for (std::size_t i = 0; i < trust.size(); ++i) {
+    if (trust[i] == 1.0F) {
+      EXPECT_EQ(noisy.outputs.back().pixels[i], clean.outputs.back().pixels[i]) << i;
+    }
+  }
+  EXPECT_NE(deblurred(false, 1.0).outputs.back().pixels,
+            deblurred(false, 0.0).outputs.back().pixels);
 }
 
 TEST(ReblurTest, SupportsMonochromeImagesOfALinearResponse) {

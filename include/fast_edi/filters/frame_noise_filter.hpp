@@ -33,9 +33,12 @@ class FrameNoiseFilter {
   void apply(const ImageView& in, float noise_dn, const float* mean_count,
              const MutableImageView& out);
 
+  /// Levels without any of the noise, of the last apply()'s last channel, row-major [DN].
+  const std::vector<float>& clean() const { return clean_; }
+
   std::size_t memoryBytes() const {
     return filter_.memoryBytes() +
-           (plane_.capacity() + variance_.capacity() + filtered_.capacity()) * sizeof(float);
+           (plane_.capacity() + variance_.capacity() + clean_.capacity()) * sizeof(float);
   }
 
  private:
@@ -45,7 +48,7 @@ class FrameNoiseFilter {
   NonLocalMeans filter_;
   std::vector<float> plane_;
   std::vector<float> variance_;
-  std::vector<float> filtered_;
+  std::vector<float> clean_;  ///< of the last channel
 };
 
 }  // namespace fast_edi

@@ -44,6 +44,11 @@ class LatentImage {
   const std::vector<float>& blurryLevels() const { return level_dn_; }
   /// Events of each pixel, mean over 3 x 3 pixels.
   const float* meanCounts() const { return gain_filter_->meanCounts(); }
+  /// Levels of the latent image without any noise of the frame, row-major [DN], of monochrome
+  /// images; null where the frame's noise is not filtered.
+  const float* cleanLevels() const {
+    return parameters_.frame_noise ? frame_noise_filter_->clean().data() : nullptr;
+  }
   /// Standard deviation of the frame's noise, given or measured [8-bit DN].
   float frameNoise() const { return noise_dn_; }
 
