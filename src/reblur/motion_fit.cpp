@@ -42,7 +42,7 @@ constexpr float kNoneLost = 0.97F;
 constexpr float kLeastShare = 0.75F;
 constexpr int kFreeSteps = 3;
 /// Variance of the residuals that a share must leave, of that without.
-constexpr double kClearlyLess = 0.9;
+constexpr double kClearlyLess = 0.97;
 constexpr std::size_t kFirstTilt = 4;  ///< of the parts
 /// S is raised by this, halved where n' is kHalfRaised.
 constexpr float kRaise = 0.25F;

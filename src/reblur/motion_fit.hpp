@@ -9,7 +9,7 @@
 /// event_share is 1, or less where the sensor loses events (its pixels have a dead time after each
 /// one): without it motions come out too small then. It stands beside the image rather than divides
 /// S, as no motion and no events at all would be a solution otherwise. It is fitted last, and used
-/// where it leaves less than 0.9 of the residuals' variance and is at least 0.75: noise of the
+/// where it leaves less than 0.97 of the residuals' variance and is at least 0.75: noise of the
 /// image makes it small, too, but explains little.
 ///
 /// Gauss-Newton over some 1,200 pixels with events at three instants, coarse to fine on images of a
