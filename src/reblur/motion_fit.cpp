@@ -4,21 +4,12 @@
 #include <cmath>
 #include <cstring>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-
 #include "base/vector_clones.hpp"
 #include "reblur/scene_layout.hpp"
 
 namespace fast_edi {
 namespace {
 
-constexpr std::size_t kParts = ImageMotion::kParts;
-constexpr std::size_t kMotionUnknowns = 2 * kParts;
-constexpr std::size_t kShareUnknown = kMotionUnknowns;
-constexpr std::size_t kUnknowns = kMotionUnknowns + 1;
-/// Of a residual: by the parts of the motion, and by the share of events.
-constexpr std::size_t kSlopes = kParts + 1;
 constexpr std::size_t kMostPixels = 1200;
 constexpr std::size_t kFewestPixels = 60;
 constexpr float kLeastCount = 1.5F;  ///< of a chosen pixel
@@ -29,13 +20,6 @@ constexpr double kConverged_px = 0.05;
 constexpr std::array<float, 3> kSpread = {6.0F, 3.0F, 2.0F};
 /// Where thresholds are smaller than this, noise of the image decides.
 constexpr float kLeastContrast = 0.1F;
-/// What is expected before any event is looked at: velocities, curvatures and tilts [px]. It
-/// decides only what the events leave open.
-constexpr double kUsualVelocity_px = 30.0;
-constexpr double kUsualCurvature_px = 10.0;
-constexpr double kUsualTilt_px = 3.0;
-constexpr double kUsualLoss = 0.03;  ///< of the share of events
-constexpr double kMostShare = 1.0;   ///< no sensor invents a change
 /// A share above the first is not worth a fit of its own; one below the second says that the image
 /// is noisy rather than that events are lost.
 constexpr float kNoneLost = 0.97F;
@@ -43,19 +27,11 @@ constexpr float kLeastShare = 0.75F;
 constexpr int kFreeSteps = 3;
 /// Variance of the residuals that a share must leave, of that without.
 constexpr double kClearlyLess = 0.97;
-constexpr std::size_t kFirstTilt = 4;  ///< of the parts
 /// S is raised by this, halved where n' is kHalfRaised.
 constexpr float kRaise = 0.25F;
 constexpr float kHalfRaised = 5.0F;
-/// Pixels that count as one.
-constexpr double kCorrelated = 4.0;
 constexpr float kHalf = 0.5F;
 constexpr float kQuarter = 0.25F;
-
-using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-using Vector = Eigen::Matrix<double, kUnknowns, 1>;
-constexpr auto kShareIndex = static_cast<Eigen::Index>(kShareUnknown);
-constexpr auto kMotionRows = static_cast<int>(kMotionUnknowns);
 
 SensorSize halved(SensorSize size) {
   return {size.width / 2, size.height / 2};
@@ -183,7 +159,7 @@ void fillSlopes(const SamplePlanes& planes, std::size_t count, float precision) 
 FAST_EDI_VECTOR_CLONES
 void addProducts(const float* const* planes, std::size_t last, const float* weight,
                  const float* residual, std::size_t count, float* squares, float* product) {
-  FloatBlock sums[kSlopes] = {};
+  FloatBlock sums[MotionEquations::kSlopes] = {};
   FloatBlock with_residual = {};
   for (std::size_t i = 0; i < count; i += kFloatBlock) {
     FloatBlock weighted;
@@ -215,44 +191,6 @@ std::size_t capacityOf(const std::vector<float>* planes, std::size_t count) {
 }
 
 }  // namespace
-
-/// Of the residuals at one instant: J^T W J and J^T W r of B(x) c and the share of events.
-struct MotionFit::Sums {
-  float squares[kSlopes][kSlopes] = {};  ///< the lower half
-  float products[kSlopes] = {};
-  float weight = 0.0F;
-  float residuals = 0.0F;  ///< weighted squares
-};
-
-/// Normal equations of c1, c2 and the share of events.
-struct MotionFit::Equations {
-  Matrix matrix = Matrix::Zero();
-  Vector right = Vector::Zero();
-  double weight = 0.0;
-  double residuals = 0.0;
-
-  double variance() const {
-    constexpr double kLeast = 1e-6;
-    return std::max(kLeast, residuals / std::max(1.0, weight));
-  }
-
-  /// What is to be subtracted from the unknowns; with the share of events held at its bound where
-  /// it would grow beyond.
-  Vector solve(float event_share) const {
-    const Vector change = matrix.ldlt().solve(right);
-    const double to_bound = static_cast<double>(event_share) - kMostShare;
-    return change[kShareIndex] < to_bound ? solveHeld(to_bound) : change;
-  }
-
-  /// The same with a given change of the share of events.
-  Vector solveHeld(double share_change) const {
-    Vector change;
-    change << matrix.topLeftCorner<kMotionRows, kMotionRows>().ldlt().solve(
-        right.head<kMotionRows>() - share_change * matrix.col(kShareIndex).head<kMotionRows>()),
-        share_change;
-    return change;
-  }
-};
 
 MotionFit::MotionFit(SensorSize size) : size_(size) {
   for (Level& level : levels_) {
@@ -367,8 +305,8 @@ void MotionFit::samplePixels(const Level& level, std::size_t instant, float scal
   }
 }
 
-MotionFit::Sums MotionFit::sumAt(const Level& level, std::size_t instant, float scale,
-                                 const FittedMotion& fitted, float spread) {
+MotionEquations::Sums MotionFit::sumAt(const Level& level, std::size_t instant, float scale,
+                                       const FittedMotion& fitted, float spread) {
   const std::size_t blocks = (chosen_.size() + kFloatBlock - 1) / kFloatBlock;
   const std::size_t count = blocks * kFloatBlock;
   for (std::vector<float>& plane : samples_) {
@@ -383,14 +321,14 @@ MotionFit::Sums MotionFit::sumAt(const Level& level, std::size_t instant, float 
               samples_[kTiltX].data(), samples_[kTiltY].data(), samples_[kWeight].data(),
               samples_[kResidual].data()},
              count, 1.0F / (spread * spread));
-  Sums sums;
+  MotionEquations::Sums sums;
   for (std::size_t i = 0; i < chosen_.size(); ++i) {
     const float residual = samples_[kResidual][i];
     sums.weight += samples_[kWeight][i];
     sums.residuals += samples_[kWeight][i] * residual * residual;
   }
-  std::array<const float*, kSlopes> planes{};
-  for (std::size_t i = 0; i < kSlopes; ++i) {
+  std::array<const float*, MotionEquations::kSlopes> planes{};
+  for (std::size_t i = 0; i < MotionEquations::kSlopes; ++i) {
     planes[i] = samples_[i].data();
     addProducts(planes.data(), i, samples_[kWeight].data(), samples_[kResidual].data(), count,
                 sums.squares[i], &sums.products[i]);
@@ -398,71 +336,24 @@ MotionFit::Sums MotionFit::sumAt(const Level& level, std::size_t instant, float 
   return sums;
 }
 
-MotionFit::Equations MotionFit::linearise(const Level& level, float scale,
-                                          const FittedMotion& fitted, float spread) {
-  Equations equations;
+MotionEquations MotionFit::linearise(const Level& level, float scale, const FittedMotion& fitted,
+                                     float spread) {
+  MotionEquations equations;
   for (std::size_t k = 0; k < EventChanges::kInstants; ++k) {
-    const Sums sums = sumAt(level, k, scale, fitted, spread);
-    const auto tau = static_cast<double>(EventChanges::kTau[k]);
-    const double factors[3] = {tau, tau * tau, 1.0};  // of c1, c2 and the share of events
-    const auto slope_of = [](std::size_t unknown) {
-      return unknown == kShareUnknown ? std::size_t{kShare} : unknown % kParts;
-    };
-    for (std::size_t i = 0; i < kUnknowns; ++i) {
-      const std::size_t row = slope_of(i);
-      const double factor = factors[i / kParts];
-      equations.right[static_cast<Eigen::Index>(i)] +=
-          factor * static_cast<double>(sums.products[row]);
-      for (std::size_t j = 0; j < kUnknowns; ++j) {
-        const std::size_t column = slope_of(j);
-        const float square = sums.squares[std::max(row, column)][std::min(row, column)];
-        equations.matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) +=
-            factor * factors[j / kParts] * static_cast<double>(square);
-      }
-    }
-    equations.weight += static_cast<double>(sums.weight);
-    equations.residuals += static_cast<double>(sums.residuals);
+    equations.add(sumAt(level, k, scale, fitted, spread),
+                  static_cast<double>(EventChanges::kTau[k]));
   }
-  const double variance = equations.variance();
-  const double share_precision = variance / (kUsualLoss * kUsualLoss);
-  equations.matrix(kShareIndex, kShareIndex) += share_precision;
-  equations.right[kShareIndex] +=
-      share_precision * (static_cast<double>(fitted.event_share) - kMostShare);
-  const ImageMotion& motion = fitted.motion;
-  for (std::size_t i = 0; i < kMotionUnknowns; ++i) {
-    const bool is_tilt = i % kParts >= kFirstTilt;
-    const double usual = is_tilt      ? kUsualTilt_px
-                         : i < kParts ? kUsualVelocity_px
-                                      : kUsualCurvature_px;
-    const double precision = variance / (usual * usual);
-    const float value = i < kParts ? motion.velocity[i] : motion.curvature[i - kParts];
-    equations.matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) += precision;
-    equations.right[static_cast<Eigen::Index>(i)] += precision * static_cast<double>(value);
-  }
+  equations.addPriors(fitted);
   return equations;
-}
-
-/// Subtracts a step of Gauss-Newton.
-double MotionFit::step(const Equations& equations, bool share_is_free, FittedMotion& fitted) {
-  const Vector change =
-      share_is_free ? equations.solve(fitted.event_share) : equations.solveHeld(0.0);
-  for (std::size_t part = 0; part < kParts; ++part) {
-    const auto index = static_cast<Eigen::Index>(part);
-    fitted.motion.velocity[part] -= static_cast<float>(change[index]);
-    fitted.motion.curvature[part] -=
-        static_cast<float>(change[index + static_cast<Eigen::Index>(kParts)]);
-  }
-  fitted.event_share -= static_cast<float>(change[kShareIndex]);
-  return change.head<kMotionRows>().cwiseAbs().maxCoeff();
 }
 
 /// Frees the share of events, and keeps what comes of it where it explains clearly more.
 /// \param equations of fitted at the finest level; of the result when it returns
-void MotionFit::findLostEvents(float spread, Equations& equations, FittedMotion& fitted) {
+void MotionFit::findLostEvents(float spread, MotionEquations& equations, FittedMotion& fitted) {
   FittedMotion freed = fitted;
-  Equations freed_equations = equations;
+  MotionEquations freed_equations = equations;
   for (int i = 0; i < kFreeSteps; ++i) {
-    step(freed_equations, true, freed);
+    freed_equations.step(true, freed);
     if (freed.event_share > kNoneLost) {
       return;
     }
@@ -493,52 +384,15 @@ FittedMotion MotionFit::fit(const float* log_image, const EventChanges& changes,
     const auto scale = static_cast<float>(1u << i);
     double largest = kConverged_px;
     for (int n = 0; n < kMostSteps[i] && largest >= kConverged_px; ++n) {
-      largest = step(linearise(level, scale, fitted, spread_at(i)), false, fitted);
+      largest = linearise(level, scale, fitted, spread_at(i)).step(false, fitted);
     }
   }
   if (chosen_.size() >= kFewestPixels) {  // of the finest level
-    Equations equations = linearise(levels_.front(), 1.0F, fitted, spread_at(0));
+    MotionEquations equations = linearise(levels_.front(), 1.0F, fitted, spread_at(0));
     findLostEvents(spread_at(0), equations, fitted);
-    measure(equations, fitted);
+    equations.measure(size_, fitted);
   }
   return fitted;
-}
-
-/// Over corners and centre of the image at start and end; the share of events is taken for exact.
-void MotionFit::measure(const Equations& equations, FittedMotion& fitted) const {
-  using MotionMatrix = Eigen::Matrix<double, kMotionRows, kMotionRows>;
-  const MotionMatrix precision = equations.matrix.topLeftCorner<kMotionRows, kMotionRows>();
-  const MotionMatrix covariance =
-      kCorrelated * equations.variance() * precision.ldlt().solve(MotionMatrix::Identity());
-  const auto right = static_cast<float>(size_.width - 1);
-  const auto bottom = static_cast<float>(size_.height - 1);
-  const std::array<Displacement, 5> places = {{{0.0F, 0.0F},
-                                               {right, 0.0F},
-                                               {0.0F, bottom},
-                                               {right, bottom},
-                                               {kHalf * right, kHalf * bottom}}};
-  double largest_variance = 0.0;
-  float ways = 0.0F;
-  for (const Displacement& place : places) {
-    const auto x = static_cast<double>(fitted.motion.relativeX(place.x));
-    const auto y = static_cast<double>(fitted.motion.relativeY(place.y));
-    for (const double tau : {-1.0, 1.0}) {
-      const Displacement u = fitted.motion.displacement(place.x, place.y, static_cast<float>(tau));
-      const float way = std::hypot(u.x, u.y);
-      ways += way;
-      fitted.reach_px = std::max(fitted.reach_px, way);
-      Eigen::Matrix<double, 2, static_cast<int>(kParts)> basis;
-      basis << 1.0, 0.0, x, -y, x * x, x * y,  //
-          0.0, 1.0, y, x, x * y, y * y;
-      Eigen::Matrix<double, 2, kMotionRows> slope;
-      slope << tau * basis, basis;
-      const Eigen::Matrix2d variance = slope * covariance * slope.transpose();
-      largest_variance = std::max(largest_variance, 0.5 * variance.trace());
-    }
-  }
-  fitted.path_px = ways / static_cast<float>(places.size());
-  fitted.deviation_px = static_cast<float>(std::sqrt(largest_variance));
-  fitted.found = std::isfinite(fitted.path_px) && std::isfinite(fitted.deviation_px);
 }
 
 std::size_t MotionFit::memoryBytes() const {

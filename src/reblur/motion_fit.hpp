@@ -31,19 +31,10 @@
 
 #include "fast_edi/base/types.hpp"
 #include "reblur/event_changes.hpp"
-#include "reblur/image_motion.hpp"
+#include "reblur/fitted_motion.hpp"
+#include "reblur/motion_equations.hpp"
 
 namespace fast_edi {
-
-/// What was found.
-struct FittedMotion {
-  ImageMotion motion;
-  float event_share = 1.0F;   ///< part of the changes that events tell, at most 1
-  float deviation_px = 0.0F;  ///< standard deviation of a displacement, largest in the image
-  float path_px = 0.0F;       ///< way from start to middle and on to the end, mean over the image
-  float reach_px = 0.0F;      ///< largest displacement
-  bool found = false;         ///< false: too few pixels had events, the rest is 0
-};
 
 class MotionFit {
  public:
@@ -91,19 +82,16 @@ class MotionFit {
     kResidual,
     kPlanes
   };
-  struct Equations;
-  struct Sums;
 
   void load(const float* log_image, const EventChanges& changes, const float* mean_counts);
   void loadChosen(const EventChanges& changes, const float* mean_counts, std::size_t level);
   void samplePixels(const Level& level, std::size_t instant, float scale,
                     const FittedMotion& fitted);
-  Sums sumAt(const Level& level, std::size_t instant, float scale, const FittedMotion& fitted,
-             float spread);
-  Equations linearise(const Level& level, float scale, const FittedMotion& fitted, float spread);
-  static double step(const Equations& equations, bool share_is_free, FittedMotion& fitted);
-  void findLostEvents(float spread, Equations& equations, FittedMotion& fitted);
-  void measure(const Equations& equations, FittedMotion& fitted) const;
+  MotionEquations::Sums sumAt(const Level& level, std::size_t instant, float scale,
+                              const FittedMotion& fitted, float spread);
+  MotionEquations linearise(const Level& level, float scale, const FittedMotion& fitted,
+                            float spread);
+  void findLostEvents(float spread, MotionEquations& equations, FittedMotion& fitted);
 
   SensorSize size_;
   std::array<Level, kLevels> levels_;  ///< the finest first

@@ -30,7 +30,8 @@ TEST(TuningSliders, AreThresholdsExposureOffsetAndStrengths) {
   EXPECT_THAT(namesOf(tuningSliders({false, 40'000, 0.0})),
               ElementsAre("contrast_threshold_on", "contrast_threshold_off", "exposure_time_us",
                           "time_offset_us", "filter_gain_noise", "filter_gain_sigma_px",
-                          "filter_gain_restore", "filter_frame_noise_kept", "filter_temporal", "frame_noise_dn"));
+                          "filter_gain_restore", "filter_frame_noise_kept", "filter_temporal",
+                          "frame_noise_dn"));
 }
 
 TEST(TuningSliders, RangesAreThoseOfTheParameters) {
