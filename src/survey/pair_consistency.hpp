@@ -5,13 +5,11 @@
 /// With B the blurry frames, E their double integrals at the middle of the exposures and l the
 /// change of level by the events between both middles,
 ///
-///     log B2 - log B1 = m + r,    m = l + log E2 - log E1 + h (q2 - q1),
+///     log B2 - log B1 = m + r,    m = l + log E2 - log E1,
 ///
-/// m being what the events predict. At an event the level is known: it has just moved by a step.
-/// Between two events it lies somewhere between both levels. Holding the level of the event before
-/// would look like events that lag behind the light by a millisecond or two, so half the step of
-/// the event to come is added (h = 1/2), which favours neither direction of time: q is the mean
-/// over the exposure of the next event's step.
+/// m being what the events predict, with the level between two events that level_model.hpp
+/// describes. Holding the level of the event before (a staircase) would look like events that lag
+/// behind the light by a millisecond or two, and like thresholds that are too large.
 ///
 /// For the right exposures r is noise. Two measures:
 ///
@@ -58,6 +56,7 @@ class PairConsistency {
   explicit PairConsistency(SensorSize size);
 
   /// Empty where the sample does not cover the exposures.
+  /// \pre the sample's events keep intervals
   std::optional<Consistency> measure(const TimingSample& sample, const WindowModel& model,
                                      ContrastThresholds thresholds);
 
@@ -69,8 +68,7 @@ class PairConsistency {
   DoubleIntegral integral_;
   std::vector<float> first_gain_;
   std::vector<float> second_gain_;
-  std::vector<float> level_;  ///< l + h (q2 - q1)
-  std::vector<float> last_weight_;
+  std::vector<float> level_;  ///< l
 };
 
 }  // namespace fast_edi

@@ -86,6 +86,7 @@ bool areStretched(const std::vector<TimingSample>& samples) {
 void invertPolarity(TimingSample& sample) {
   auto inverted =
       std::make_unique<PixelEventLists>(sample.events->size(), PixelEventLists::Limits{});
+  inverted->keepIntervals(true);
   const auto width = static_cast<std::uint32_t>(sample.events->size().width);
   const std::uint64_t end = sample.events->endSequence();
   for (std::uint64_t sequence = sample.events->beginSequence(); sequence < end;) {
@@ -108,6 +109,7 @@ TimingSampler::TimingSampler(SensorSize size, const std::vector<SampleRequest>& 
     slots_[i].request = requests[i];
     slots_[i].sample.events =
         std::make_unique<PixelEventLists>(grid_.size(), PixelEventLists::Limits{});
+    slots_[i].sample.events->keepIntervals(true);
   }
 }
 

@@ -28,8 +28,8 @@ struct SampledFrame {
 struct TimingSample {
   SampledFrame first;
   SampledFrame second;
-  std::unique_ptr<PixelEventLists> events;
-  std::vector<std::uint8_t> informative;  ///< row-major, 0: the pixel is not; empty: all may be
+  std::unique_ptr<PixelEventLists> events;  ///< with intervals, see keepIntervals()
+  std::vector<std::uint8_t> informative;    ///< row-major, 0: the pixel is not; empty: all may be
 };
 
 /// Which pair of frames a sample is to hold, and which events, in event time.

@@ -15,7 +15,7 @@ constexpr double kNear = 0.10;
 constexpr double kSigmas = 3.0;
 constexpr double kLargestSigma_ns = 3.0 * kMs;
 constexpr double kWrongLength = 0.25;
-constexpr double kWrongThreshold = 1.6;
+constexpr double kWrongThreshold = 1.3;  // as far as refine_contrast learns
 constexpr double kThresholdSigmas = 2.0;
 constexpr double kProposalStep_us = 100.0;
 /// Of an offset by the times of recording.

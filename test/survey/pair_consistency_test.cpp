@@ -1,6 +1,8 @@
 // What frames and events say, for exposures that are assumed.
 #include "survey/pair_consistency.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "simulation/davis_simulator.hpp"
@@ -58,10 +60,13 @@ class PairConsistencySimulation : public ::testing::Test {
     sample_ = std::move(sampler.take().at(0));
   }
 
-  Consistency at(double shift_ms) {
+  Consistency at(double shift_ms, double threshold_factor = 1.0) {
     WindowModel model;
     model.shift_ns = shift_ms * kMs;
-    return PairConsistency(size_).measure(sample_, model, thresholds_).value();
+    return PairConsistency(size_)
+        .measure(sample_, model,
+                 {threshold_factor * thresholds_.on, threshold_factor * thresholds_.off})
+        .value();
   }
 
   ContrastThresholds thresholds_;
@@ -75,6 +80,21 @@ TEST_F(PairConsistencySimulation, TheTrueExposuresFitBest) {
     EXPECT_GT(at(shift_ms).cost, at(0.0).cost) << shift_ms;
     EXPECT_LT(at(shift_ms).correlation, at(0.0).correlation) << shift_ms;
   }
+}
+
+/// Within what the fit of a single pair can tell.
+TEST_F(PairConsistencySimulation, ThresholdsNearTheTrueOnesFitBest) {
+  double best = 0.0;
+  double least = INFINITY;
+  for (const double factor : {0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4}) {
+    const double cost = at(0.0, factor).cost;
+    if (cost < least) {
+      least = cost;
+      best = factor;
+    }
+  }
+  EXPECT_GE(best, 1.0);
+  EXPECT_LE(best, 1.1);
 }
 
 TEST_F(PairConsistencySimulation, ShiftsBeyondTheEventsAreNotMeasured) {

@@ -19,6 +19,7 @@ TimingSample noise(unsigned seed) {
   std::mt19937 random(seed);
   TimingSample sample;
   sample.events = std::make_unique<PixelEventLists>(kSize, PixelEventLists::Limits{});
+  sample.events->keepIntervals(true);
   for (std::int64_t t_ns = 0; t_ns < 300 * kMs; t_ns += 20'000) {
     sample.events->append(Event{static_cast<std::uint16_t>(random() % 40),
                                 static_cast<std::uint16_t>(random() % 30), t_ns,
