@@ -50,14 +50,14 @@ cv::Size largestPanel(const Sheet& sheet) {
 
 /// Brings \p panel to three channels and magnifies it.
 cv::Mat prepared(const cv::Mat& panel, int magnification) {
-  cv::Mat color;
+  cv::Mat colour;
   if (panel.channels() == 1) {
-    cv::cvtColor(panel, color, cv::COLOR_GRAY2BGR);
+    cv::cvtColor(panel, colour, cv::COLOR_GRAY2BGR);
   } else {
-    color = panel;
+    colour = panel;
   }
   cv::Mat larger;
-  cv::resize(color, larger, {}, magnification, magnification, cv::INTER_CUBIC);
+  cv::resize(colour, larger, {}, magnification, magnification, cv::INTER_CUBIC);
   return larger;
 }
 

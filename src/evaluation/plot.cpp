@@ -25,16 +25,16 @@ const cv::Scalar kBlack(0, 0, 0);
 const cv::Scalar kGrid(225, 225, 225);
 
 /// Distinguishable also by those who see red and green alike (Okabe and Ito), as BGR.
-cv::Scalar seriesColor(std::size_t index) {
-  constexpr std::array<std::array<int, 3>, 6> kColors = {
+cv::Scalar seriesColour(std::size_t index) {
+  constexpr std::array<std::array<int, 3>, 6> kColours = {
       {{150, 150, 150}, {178, 114, 0}, {233, 180, 86}, {115, 158, 0}, {0, 94, 213}, {0, 0, 0}}};
-  const std::array<int, 3>& color = kColors[index % kColors.size()];
-  return cv::Scalar(color[0], color[1], color[2]);
+  const std::array<int, 3>& colour = kColours[index % kColours.size()];
+  return cv::Scalar(colour[0], colour[1], colour[2]);
 }
 
 void write(cv::Mat& canvas, const std::string& text, cv::Point at,
-           const cv::Scalar& color = kBlack) {
-  cv::putText(canvas, text, at, kFont, kTextScale, color, 1, cv::LINE_AA);
+           const cv::Scalar& colour = kBlack) {
+  cv::putText(canvas, text, at, kFont, kTextScale, colour, 1, cv::LINE_AA);
 }
 
 std::string number(double value) {
@@ -97,7 +97,7 @@ Frame makeFrame(const PlotLabels& labels, const std::vector<PlotSeries>& series,
   write(frame.canvas, labels.x, {kLeftPx, frame.canvas.rows - 6});
   int x = kLeftPx + 120;
   for (std::size_t i = 0; i < series.size(); ++i) {
-    cv::rectangle(frame.canvas, cv::Rect(x, 2 * kLineHeightPx - 9, 10, 10), seriesColor(i),
+    cv::rectangle(frame.canvas, cv::Rect(x, 2 * kLineHeightPx - 9, 10, 10), seriesColour(i),
                   cv::FILLED);
     write(frame.canvas, series[i].name, {x + 14, 2 * kLineHeightPx});
     x += 34 + cv::getTextSize(series[i].name, kFont, kTextScale, 1, nullptr).width;
@@ -131,9 +131,9 @@ cv::Mat linePlot(const PlotLabels& labels, const std::vector<PlotSeries>& series
         continue;
       }
       const cv::Point at(x_of(i), frame.y(*values[i]));
-      cv::circle(frame.canvas, at, 3, seriesColor(s), cv::FILLED, cv::LINE_AA);
+      cv::circle(frame.canvas, at, 3, seriesColour(s), cv::FILLED, cv::LINE_AA);
       if (i > 0 && values[i - 1]) {
-        cv::line(frame.canvas, {x_of(i - 1), frame.y(*values[i - 1])}, at, seriesColor(s), 2,
+        cv::line(frame.canvas, {x_of(i - 1), frame.y(*values[i - 1])}, at, seriesColour(s), 2,
                  cv::LINE_AA);
       }
     }
@@ -163,7 +163,7 @@ cv::Mat barPlot(const PlotLabels& labels, const std::vector<std::string>& groups
       const int x = static_cast<int>(left + bar_width * static_cast<double>(s));
       const int width = std::max(1, static_cast<int>(bar_width) - 1);
       const int top = frame.y(*series[s].values[group]);
-      cv::rectangle(frame.canvas, cv::Rect(x, top, width, frame.area.br().y - top), seriesColor(s),
+      cv::rectangle(frame.canvas, cv::Rect(x, top, width, frame.area.br().y - top), seriesColour(s),
                     cv::FILLED);
     }
     const int line = 1 + static_cast<int>(group % 2);
@@ -197,9 +197,9 @@ cv::Mat pictureGrid(const std::vector<CaptionedPicture>& pictures, int columns, 
     write(canvas, picture.caption, at + cv::Point(2, kLineHeightPx - 5));
     cv::Mat large;
     cv::resize(picture.image, large, {}, scale, scale, cv::INTER_NEAREST);
-    cv::Mat colored;
-    cv::cvtColor(large, colored, cv::COLOR_GRAY2BGR);
-    colored.copyTo(canvas(cv::Rect(at + cv::Point(0, kLineHeightPx), colored.size())));
+    cv::Mat coloured;
+    cv::cvtColor(large, coloured, cv::COLOR_GRAY2BGR);
+    coloured.copyTo(canvas(cv::Rect(at + cv::Point(0, kLineHeightPx), coloured.size())));
   }
   return canvas;
 }

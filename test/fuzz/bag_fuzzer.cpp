@@ -1,8 +1,5 @@
 /// deblur_bag on damaged bags: the input is the file. Reading, the pipeline, and writing, as the
 /// tool does it.
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -18,32 +15,17 @@
 #include "fast_edi/bags/bag_writer.hpp"
 #include "fast_edi/bags/topic_names.hpp"
 #include "fuzz/fuzzing.hpp"
+#include "fuzz/memory_file.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace {
 
+using fast_edi::fuzzing::MemoryFile;
 using fast_edi::fuzzing::require;
 
 /// rosbag takes longer to open a bag for writing than everything else here takes: one input in so
 /// many, by its size, is written as well.
 constexpr std::size_t kInputsPerOutput = 8;
-
-/// A regular file in memory, which is faster than one on a disk.
-class MemoryFile {
- public:
-  MemoryFile() : descriptor_(::memfd_create("bag", 0)) {
-    require(descriptor_ >= 0, "there is memory for a file");
-  }
-  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-  void fill(const std::uint8_t* data, std::size_t size) const {
-    require(::ftruncate(descriptor_, 0) == 0 &&
-                ::pwrite(descriptor_, data, size, 0) == static_cast<ssize_t>(size),
-            "a file in memory can be written");
-  }
-
- private:
-  int descriptor_;
-};
 
 const MemoryFile& inputFile() {
   static const MemoryFile file;

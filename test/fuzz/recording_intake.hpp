@@ -3,9 +3,6 @@
 /// messages that the tools get of it.
 #pragma once
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -19,25 +16,9 @@
 #include "fast_edi/recording/recording.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "fuzz/fuzzing.hpp"
+#include "fuzz/memory_file.hpp"
 
 namespace fast_edi::fuzzing {
-
-/// A regular file in memory, which is faster than one on a disk.
-class MemoryFile {
- public:
-  MemoryFile() : descriptor_(::memfd_create("recording", 0)) {
-    require(descriptor_ >= 0, "there is memory for a file");
-  }
-  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-  void fill(const std::uint8_t* data, std::size_t size) const {
-    require(::ftruncate(descriptor_, 0) == 0 &&
-                ::pwrite(descriptor_, data, size, 0) == static_cast<ssize_t>(size),
-            "a file in memory can be written");
-  }
-
- private:
-  int descriptor_;
-};
 
 /// Touches each byte that an item points to.
 inline std::size_t sumOf(const RecordingItem& item) {

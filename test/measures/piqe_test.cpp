@@ -81,7 +81,7 @@ TEST(PiqeBlockTest, ThresholdOfActivityIsAVarianceOfOneTenth) {
   EXPECT_TRUE(assessPiqeBlock(coefficients * (at_threshold * 1.001)).active);
 }
 
-TEST(NormalizedCoefficientsTest, OfOneBrightPixelAreThoseByHand) {
+TEST(NormalisedCoefficientsTest, OfOneBrightPixelAreThoseByHand) {
   cv::Mat image(21, 21, CV_8UC1, cv::Scalar(50));
   image.at<std::uint8_t>(10, 10) = 150;
   double sum = 0.0;
