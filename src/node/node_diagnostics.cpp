@@ -218,6 +218,7 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
   status.addf("Event delay, learned [ms]", "%.3f", milliseconds(now_.status.event_delay_ns));
   status.add("Pairs of frames learned from", c.calibration_fits);
   status.add("Pairs of frames without events between", c.calibration_holes);
+  status.add("Pairs of frames that contradict their events", c.calibration_contradictions);
   status.add("Sensor size [px]", sizeText(now_.status.sensor_size));
   status.addf("Exposure [ms]", "%.3f", milliseconds(now_.status.last_exposure_ns));
   status.add("Frames in", c.frames_in);

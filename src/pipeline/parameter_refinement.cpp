@@ -53,6 +53,7 @@ void ParameterRefinement::learn(const ImageView& blurry, const ExposureInterval&
       {window, reference_ns, blurry, gains_.data()}, in_force_.response, *events.lists());
   counters.calibration_fits += outcome == CalibrationOutcome::kFitted ? 1 : 0;
   counters.calibration_holes += outcome == CalibrationOutcome::kNoEventsBetween ? 1 : 0;
+  counters.calibration_contradictions += outcome == CalibrationOutcome::kContradiction ? 1 : 0;
   apply(calibration_->inForce());
 }
 

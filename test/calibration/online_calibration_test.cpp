@@ -222,6 +222,25 @@ class OnlineCalibrationPair : public ::testing::Test {
     }
   }
 
+  /// Two frames, of which the second is darker by five OFF events, and five events of each pixel
+  /// between them.
+  CalibrationOutcome darken(bool on) {
+    constexpr int kSteps = 5;
+    for (int step = 0; step < kSteps; ++step) {
+      for (std::size_t i = 0; i < kSize.pixelCount(); ++i) {
+        lists.append({static_cast<std::uint16_t>(i % kSize.width),
+                      static_cast<std::uint16_t>(i / kSize.width),
+                      kExposure_ns + step * kMs + static_cast<std::int64_t>(i), on});
+      }
+    }
+    constexpr std::uint8_t kBright_dn = 200;
+    std::fill(pixels.begin(), pixels.end(), kBright_dn);
+    addFrame(0);
+    std::fill(pixels.begin(), pixels.end(),
+              static_cast<std::uint8_t>(std::lround(kBright_dn * std::exp(-kSteps * kTrue.off))));
+    return addFrame(kPeriod_ns);
+  }
+
   OnlineCalibration calibration{kSize, {kTrue}, {true, true}};
   PixelEventLists lists{kSize, {}};
   std::vector<std::uint8_t> pixels = std::vector<std::uint8_t>(kSize.pixelCount(), 100);
@@ -241,6 +260,17 @@ TEST_F(OnlineCalibrationPair, NoiseAloneTeachesNothing) {
   addFrame(0);
   EXPECT_EQ(addFrame(kPeriod_ns), CalibrationOutcome::kTooFewPixels);
   EXPECT_EQ(calibration.inForce().thresholds, kTrue);
+}
+
+TEST_F(OnlineCalibrationPair, LearnsFromEventsThatTellWhatTheFramesShow) {
+  EXPECT_EQ(darken(false), CalibrationOutcome::kFitted);
+  EXPECT_EQ(calibration.inForce().thresholds, kTrue);
+}
+
+TEST_F(OnlineCalibrationPair, LearnsNothingFromEventsThatContradictTheFrames) {
+  EXPECT_EQ(darken(true), CalibrationOutcome::kContradiction);
+  EXPECT_EQ(calibration.inForce().thresholds, kTrue);
+  EXPECT_EQ(calibration.inForce().event_delay_ns, 0);
 }
 
 TEST_F(OnlineCalibrationPair, RestsWhenNothingIsToBeLearned) {

@@ -31,15 +31,39 @@ std::shared_ptr<const std::vector<std::uint8_t>> makePixels(Random& random, Sens
   return std::make_shared<const std::vector<std::uint8_t>>(makeGreyImage(samples, random()));
 }
 
-Schedule eventArrays(Random& random, const CameraRun& run) {
+/// Whether a pixel grows brighter all the time, where each grows steadily brighter or darker.
+bool growsBrighter(int x, int y) {
+  return (x + y) % 2 == 0;
+}
+
+/// Of pixels that grow steadily brighter or darker from each even frame to the next: thresholds can
+/// be learned from such a pair.
+std::shared_ptr<const std::vector<std::uint8_t>> makeSteadyPixels(Random& random, SensorSize size,
+                                                                  PixelFormat format, int frame) {
+  constexpr int kDark_dn = 30;
+  constexpr int kBright_dn = 210;
+  constexpr int kNoise_dn = 5;
+  auto pixels = std::make_shared<std::vector<std::uint8_t>>();
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const bool is_bright = growsBrighter(x, y) == (frame % 2 == 1);
+      const std::int64_t level =
+          (is_bright ? kBright_dn : kDark_dn) + uniform(random, -kNoise_dn, kNoise_dn);
+      pixels->insert(pixels->end(), static_cast<std::size_t>(bytesPerPixel(format)),
+                     static_cast<std::uint8_t>(level));
+    }
+  }
+  return pixels;
+}
+
+Schedule eventArrays(Random& random, const CameraRun& run, bool is_steady) {
   const std::int64_t duration_ns = (run.frames + 1) * kPeriod_ns;
   std::vector<Event> events = makeEvents(
       EventScene::kUniform, {run.size, static_cast<std::size_t>(duration_ns / kEventInterval_ns),
                              run.start_ns, duration_ns, random()});
-  if (chance(random, 50)) {
-    // Each pixel steadily brighter or darker, from which thresholds can be learned.
+  if (is_steady) {
     for (Event& event : events) {
-      event.on = (event.x + event.y) % 2 == 0;
+      event.on = growsBrighter(event.x, event.y);
     }
   }
   events.front().t_ns = run.start_ns;
@@ -66,6 +90,7 @@ Schedule eventArrays(Random& random, const CameraRun& run) {
 
 Topics cameraTopics(Random& random, const CameraRun& run) {
   Topics topics;
+  const bool is_steady = chance(random, 50);
   for (int i = 0; i < run.frames; ++i) {
     const auto length_us = static_cast<std::int32_t>(uniform(random, 1'000, 30'000));
     const std::int64_t end_ns = (i + 1) * kPeriod_ns - uniform(random, 0, 50) * kUs;
@@ -76,7 +101,8 @@ Topics cameraTopics(Random& random, const CameraRun& run) {
     // The middle of the exposure, rounded as the driver does it.
     frame.stamp_ns = run.start_ns + end_ns - length_us * kUs + length_us / 2 * kUs;
     frame.format = run.format;
-    frame.pixels = makePixels(random, run.size, run.format);
+    frame.pixels = is_steady ? makeSteadyPixels(random, run.size, run.format, i)
+                             : makePixels(random, run.size, run.format);
     ScheduledMessage exposure;
     exposure.kind = MessageKind::kExposure;
     exposure.now_ns = frame.now_ns + 10 * kUs;
@@ -84,7 +110,7 @@ Topics cameraTopics(Random& random, const CameraRun& run) {
     topics.frames.push_back(std::move(frame));
     topics.exposures.push_back(std::move(exposure));
   }
-  topics.events = eventArrays(random, run);
+  topics.events = eventArrays(random, run, is_steady);
   return topics;
 }
 

@@ -57,7 +57,8 @@ struct DeblurCounters {
   std::uint64_t frames_abandoned = 0;   ///< waited when listening ended: no output
   std::uint64_t calibration_fits = 0;   ///< pairs of frames that the calibration learned from
   std::uint64_t calibration_holes = 0;  ///< pairs without events between their exposures
-  std::uint64_t latent_images = 0;      ///< of the high-rate video
+  std::uint64_t calibration_contradictions = 0;  ///< pairs that do not change as their events say
+  std::uint64_t latent_images = 0;               ///< of the high-rate video
   std::uint64_t exposures_in = 0;
   std::uint64_t exposures_refused = 0;  ///< <= 0 or > 1 s
   std::uint64_t exposures_surplus = 0;

@@ -38,6 +38,9 @@
 /// Settings::most_events, a band of rows with about that many is used; the next pair takes the next
 /// band, and comes later by a frame for each most_events.
 ///
+/// A pair whose frames do not change as its events say (cosine below 0.8 over the informative
+/// pixels) teaches nothing: its events are wrong, not the parameters.
+///
 /// Recordings without events between exposures exist (a driver dropped them); there the fit would
 /// be wrong and is not made.
 #pragma once
@@ -68,6 +71,7 @@ enum class CalibrationOutcome {
   kNoPair,           ///< nothing to compare with
   kNoEventsBetween,  ///< the stream holds no events between the exposures
   kTooFewPixels,     ///< nothing moved enough
+  kContradiction,    ///< frames and events do not tell of the same change
   kFitted,
 };
 
@@ -129,6 +133,22 @@ class OnlineCalibration {
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
     Eigen::Vector3d vector = Eigen::Vector3d::Zero();
   };
+  /// Of a pair's changes, as the frames and as the events tell them.
+  class Agreement {
+   public:
+    void add(double by_frames, double by_events, double weight) {
+      frames_ += weight * by_frames * by_frames;
+      events_ += weight * by_events * by_events;
+      both_ += weight * by_frames * by_events;
+    }
+    /// Cosine between both, -1 to 1; NaN where nothing has changed.
+    double cosine() const;
+
+   private:
+    double frames_ = 0.0;
+    double events_ = 0.0;
+    double both_ = 0.0;
+  };
 
   /// The frame before, as the next one is compared with it.
   struct Previous {
@@ -146,7 +166,7 @@ class OnlineCalibration {
   void loadLogLatent(const Frame& frame, const CameraResponse& response);
   Band nextBand(std::uint64_t events);
   Band gather(const Frame& frame, const PixelEventLists& lists);
-  std::size_t fit(const Band& band, NormalEquations& equations) const;
+  std::size_t fit(const Band& band, NormalEquations& equations, Agreement& agreement) const;
   void updateInForce();
 
   SensorSize size_;
