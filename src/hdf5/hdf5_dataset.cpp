@@ -169,6 +169,15 @@ void Hdf5Dataset::checkStorage(hid_t creation, std::uint64_t stored) {
   }
   chunk_bytes_ = static_cast<std::size_t>(bytes);
   checkFilters(creation);
+  // Without filters all chunks have the same size. HDF5 itself says so of each, whatever its index
+  // says, reads as many bytes as the index says, and beyond the end of those that hold less.
+  if (H5Pget_nfilters(creation) == 0) {
+    if (stored % bytes != 0) {
+      refuse("it has " + std::to_string(stored) + " bytes, expected whole chunks of " +
+             std::to_string(bytes));
+    }
+    is_checkable_ = false;
+  }
 }
 
 void Hdf5Dataset::checkFilters(hid_t creation) {

@@ -342,6 +342,25 @@ TEST_F(Hdf5Made, BombIsRefused) {
                  HasSubstr("events/p: the chunk at 0 is damaged: expected 2000000 bytes"))));
 }
 
+/// Without filters; HDF5 itself reads such a chunk beyond its end.
+TEST_F(Hdf5Made, ChunksOfOddSizesAreRefused) {
+  addEvents({1, 2, 3, 4});
+  H5Ldelete(file_.id(), "events/p", H5P_DEFAULT);
+  {
+    const Hdf5Handle chunked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    const hsize_t chunk = 2;
+    H5Pset_chunk(chunked.id(), 1, &chunk);
+    creation_ = chunked.id();
+    const Hdf5Handle target = add<std::uint8_t>("events/p", H5T_NATIVE_UINT8, {4}, {});
+    const hsize_t first = 0;
+    const std::vector<std::uint8_t> bytes = {1, 1, 1};
+    ASSERT_GE(H5Dwrite_chunk(target.id(), H5P_DEFAULT, 0, &first, bytes.size(), bytes.data()), 0);
+  }
+  creation_ = H5P_DEFAULT;
+  EXPECT_THAT(refused(),
+              HasSubstr("made.h5, events/p: it has 3 bytes, expected whole chunks of 2"));
+}
+
 std::vector<char> bytesOf(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
