@@ -208,14 +208,19 @@ TEST_F(DvStreamNodeTest, ACutIsAHoleInTheSequence) {
   })) << report_.message;
 }
 
-TEST_F(DvStreamNodeTest, ACalibrationComesWithItsFrame) {
-  const TemporaryDirectory directory;
-  const std::string path = directory.file("calibration.yaml");
-  std::ofstream(path) << "image_width: 4\nimage_height: 3\ndistortion_model: plumb_bob\n"
+void writeCalibration(const std::string& path, int width) {
+  std::ofstream(path) << "image_width: " << width
+                      << "\nimage_height: 3\ndistortion_model: plumb_bob\n"
                          "camera_matrix: {data: [5, 0, 2, 0, 5, 1, 0, 0, 1]}\n"
                          "distortion_coefficients: {data: [0, 0, 0, 0, 0]}\n"
                          "rectification_matrix: {data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}\n"
                          "projection_matrix: {data: [5, 0, 2, 0, 0, 5, 1, 0, 0, 0, 1, 0]}\n";
+}
+
+TEST_F(DvStreamNodeTest, ACalibrationComesWithItsFrame) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("calibration.yaml");
+  writeCalibration(path, 4);
   set("camera_info_file", path);
   serve("frames", frameStream());
   start();
@@ -227,11 +232,7 @@ TEST_F(DvStreamNodeTest, ACalibrationComesWithItsFrame) {
 TEST_F(DvStreamNodeTest, AnotherSizeThanTheCalibrationsIsReported) {
   const TemporaryDirectory directory;
   const std::string path = directory.file("calibration.yaml");
-  std::ofstream(path) << "image_width: 5\nimage_height: 3\ndistortion_model: plumb_bob\n"
-                         "camera_matrix: {data: [5, 0, 2, 0, 5, 1, 0, 0, 1]}\n"
-                         "distortion_coefficients: {data: [0, 0, 0, 0, 0]}\n"
-                         "rectification_matrix: {data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}\n"
-                         "projection_matrix: {data: [5, 0, 2, 0, 0, 5, 1, 0, 0, 0, 1, 0]}\n";
+  writeCalibration(path, 5);
   set("camera_info_file", path);
   serve("frames", frameStream());
   start();
