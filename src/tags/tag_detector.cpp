@@ -9,13 +9,18 @@
 #include <apriltag/apriltag.h>
 #include <apriltag/tag16h5.h>
 #include <apriltag/tag25h9.h>
-#include <apriltag/tag36h10.h>
 #include <apriltag/tag36h11.h>
 #include <apriltag/tagCircle21h7.h>
 #include <apriltag/tagCircle49h12.h>
 #include <apriltag/tagCustom48h12.h>
 #include <apriltag/tagStandard41h12.h>
 #include <apriltag/tagStandard52h13.h>
+
+// Since libapriltag 3.2; Debian 11 and Ubuntu 20.04 have older ones.
+#if __has_include(<apriltag/tag36h10.h>)
+#include <apriltag/tag36h10.h>
+#define FAST_EDI_HAVE_TAG36H10
+#endif
 
 namespace fast_edi {
 namespace {
@@ -25,10 +30,14 @@ struct FamilyFunctions {
   void (*destroy)(apriltag_family_t*);
 };
 
-/// In the order of kTagFamilies.
+/// In the order of kTagFamilies; nullptr where libapriltag is too old.
 constexpr std::array<FamilyFunctions, kTagFamilies.size()> kFamilyFunctions = {{
     {tag36h11_create, tag36h11_destroy},
+#ifdef FAST_EDI_HAVE_TAG36H10
     {tag36h10_create, tag36h10_destroy},
+#else
+    {nullptr, nullptr},
+#endif
     {tag25h9_create, tag25h9_destroy},
     {tag16h5_create, tag16h5_destroy},
     {tagCircle21h7_create, tagCircle21h7_destroy},
@@ -57,6 +66,10 @@ FamilyPointer createFamily(const std::string& name) {
   std::string known;
   for (std::size_t i = 0; i < kTagFamilies.size(); ++i) {
     if (name == kTagFamilies[i]) {
+      if (kFamilyFunctions[i].create == nullptr) {
+        throw std::invalid_argument("family: " + name +
+                                    " needs libapriltag 3.2 or newer, this build has an older one");
+      }
       FamilyPointer family(kFamilyFunctions[i].create(), kFamilyFunctions[i].destroy);
       if (!family) {
         throw std::runtime_error("libapriltag could not create the family " + name);

@@ -120,6 +120,12 @@ TEST(TagDetectorTest, KnowsEachFamilyThatItNames) {
     TagDetectorSettings settings;
     settings.family = family;
     settings.corrected_bits = 0;
+#if !__has_include(<apriltag/tag36h10.h>)
+    if (settings.family == "36h10") {
+      EXPECT_THAT(refusal(settings), HasSubstr("36h10 needs libapriltag 3.2 or newer"));
+      continue;
+    }
+#endif
     EXPECT_NO_THROW(TagDetector{settings}) << family;
   }
 }

@@ -11,7 +11,8 @@
 
 namespace fast_edi {
 
-/// Families that can be detected, by libapriltag's names without their "tag".
+/// Families that can be detected, by libapriltag's names without their "tag". 36h10 needs
+/// libapriltag 3.2.
 constexpr std::array<const char*, 9> kTagFamilies = {
     "36h11",       "36h10",       "25h9",          "16h5",          "Circle21h7",
     "Circle49h12", "Custom48h12", "Standard41h12", "Standard52h13",
@@ -45,7 +46,8 @@ class TagDetector {
   /// Tables of the largest families do not fit with two corrected bits.
   static constexpr double kMaxTableBytes = 512e6;
 
-  /// \throws std::invalid_argument for settings out of range, naming what was expected
+  /// \throws std::invalid_argument for settings out of range, and for a family newer than
+  /// libapriltag, naming what was expected
   /// \throws std::runtime_error when libapriltag cannot allocate the detector
   explicit TagDetector(const TagDetectorSettings& settings = {});
   ~TagDetector();
