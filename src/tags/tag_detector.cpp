@@ -7,6 +7,9 @@
 #include <tuple>
 
 #include <apriltag/apriltag.h>
+
+// Those of libapriltag before 3.2 (Debian 11, Ubuntu 20.04) do not say that they are C.
+extern "C" {
 #include <apriltag/tag16h5.h>
 #include <apriltag/tag25h9.h>
 #include <apriltag/tag36h11.h>
@@ -15,12 +18,11 @@
 #include <apriltag/tagCustom48h12.h>
 #include <apriltag/tagStandard41h12.h>
 #include <apriltag/tagStandard52h13.h>
-
-// Since libapriltag 3.2; Debian 11 and Ubuntu 20.04 have older ones.
 #if __has_include(<apriltag/tag36h10.h>)
 #include <apriltag/tag36h10.h>
 #define FAST_EDI_HAVE_TAG36H10
 #endif
+}
 
 namespace fast_edi {
 namespace {
