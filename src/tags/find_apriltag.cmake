@@ -13,6 +13,7 @@ if(NOT TARGET apriltag::apriltag)
     IMPORTED_LOCATION "${APRILTAG_LIBRARY}"
     INTERFACE_INCLUDE_DIRECTORIES "${APRILTAG_INCLUDE_DIR}")
   if(NOT EXISTS "${APRILTAG_INCLUDE_DIR}/apriltag/tag36h10.h")
-    message(STATUS "libapriltag is older than 3.2: no tags of the family 36h10")
+    message(WARNING "libapriltag is older than 3.2: no tags of the family 36h10, and the detector of 0.10, for "
+      "one, ends the process on some images. Do not run tag_detector in the manager of a camera.")
   endif()
 endif()
