@@ -12,8 +12,11 @@ if(NOT TARGET apriltag::apriltag)
   set_target_properties(apriltag::apriltag PROPERTIES
     IMPORTED_LOCATION "${APRILTAG_LIBRARY}"
     INTERFACE_INCLUDE_DIRECTORIES "${APRILTAG_INCLUDE_DIR}")
-  if(NOT EXISTS "${APRILTAG_INCLUDE_DIR}/apriltag/tag36h10.h")
-    message(WARNING "libapriltag is older than 3.2: no tags of the family 36h10, and the detector of 0.10, for "
-      "one, ends the process on some images. Do not run tag_detector in the manager of a camera.")
-  endif()
+endif()
+
+get_target_property(apriltag_include_dirs apriltag::apriltag INTERFACE_INCLUDE_DIRECTORIES)
+find_file(APRILTAG_36H10_HEADER apriltag/tag36h10.h PATHS ${apriltag_include_dirs})
+if(NOT APRILTAG_36H10_HEADER)
+  message(WARNING "libapriltag is older than 3.2: no tags of the family 36h10, and the detector of 0.10, for "
+    "one, ends the process on some images. Do not run tag_detector in the manager of a camera.")
 endif()
