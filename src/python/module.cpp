@@ -29,6 +29,23 @@ namespace py = pybind11;
 using fast_edi::python::ArrayDeblurrer;
 using fast_edi::python::RecordingItems;
 
+// pybind11 before 2.12 takes the arrays of NumPy 2 for those of NumPy 1, whose memory is laid out
+// otherwise, and reads wrong numbers.
+constexpr bool kReadsNumpy2 = PYBIND11_VERSION_MAJOR > 2 ||
+                              (PYBIND11_VERSION_MAJOR == 2 && PYBIND11_VERSION_MINOR >= 12);
+
+/// \throws std::runtime_error (ImportError in Python) for a NumPy whose arrays cannot be read
+void requireReadableArrays() {
+  if (kReadsNumpy2) return;
+  const auto version = py::module::import("numpy").attr("__version__").cast<std::string>();
+  if (std::stoi(version) >= 2) {
+    throw std::runtime_error(
+        "fast_edi was built with a pybind11 that reads arrays of NumPy 1 alone, expected NumPy "
+        "before 2, found " +
+        version + ": install fast_edi in this environment by pip, or numpy<2");
+  }
+}
+
 void addEvents(ArrayDeblurrer& deblurrer, const py::array& x, const py::array& y,
                const py::array& t, const py::array& p, std::uint32_t lost_arrays) {
   using fast_edi::python::integerColumn;
@@ -182,7 +199,9 @@ std::unique_ptr<RecordingItems> openItems(const std::string& path, std::int64_t 
 }  // namespace
 
 PYBIND11_MODULE(_fast_edi, module) {
+  requireReadableArrays();
   module.attr("__version__") = FAST_EDI_VERSION;
+  module.attr("_reads_numpy_2") = kReadsNumpy2;
   py::register_exception_translator([](std::exception_ptr error) {
     try {
       if (error) {

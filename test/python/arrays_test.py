@@ -227,3 +227,13 @@ def test_import_loads_no_ros():
     code = "import fast_edi; print(any('libroscpp' in line for line in open('/proc/self/maps')))"
     assert subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True,
                           env=os.environ).stdout.strip() == "False"
+
+
+def test_a_numpy_whose_arrays_cannot_be_read_is_refused():
+    code = "import numpy; numpy.__version__ = '2.4.6'; import fast_edi"
+    found = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True, env=os.environ)
+    if fast_edi._fast_edi._reads_numpy_2:
+        assert found.returncode == 0, found.stderr
+    else:
+        assert "ImportError" in found.stderr
+        assert "expected NumPy before 2, found 2.4.6" in found.stderr

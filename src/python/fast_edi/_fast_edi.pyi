@@ -4,6 +4,7 @@ from typing import Any, Dict, List, Optional, Tuple
 import numpy
 
 __version__: str
+_reads_numpy_2: bool
 
 class Deblurrer:
     def __init__(self, width: int, height: int, unit_ns: int, latent_rate_hz: int, config: str,
