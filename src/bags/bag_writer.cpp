@@ -96,26 +96,41 @@ void requireWritable(const std::string& path) {
 }  // namespace
 
 BagWriter::BagWriter(const std::string& path, const std::vector<std::string>& inputs,
-                     const std::string& compression, bool overwrite)
-    : path_(path), active_path_(path + ".active") {
+                     const std::string& compression, bool overwrite, UnfinishedBag unfinished)
+    : path_(path), active_path_(path + ".active"), unfinished_(unfinished) {
+  requireFree(inputs, overwrite);
+  requireWritable(active_path_);
+  if (unfinished_ == UnfinishedBag::kRemove) {
+    claim();
+  }
+  bag_ = std::make_unique<rosbag::Bag>();
+  guarded([&] {
+    bag_->open(active_path_, rosbag::bagmode::Write);
+    bag_->setCompression(compressionType(compression));
+  });
+}
+
+void BagWriter::requireFree(const std::vector<std::string>& inputs, bool overwrite) const {
   for (const std::string& output : {path_, active_path_}) {
+    const bool may_exist =
+        overwrite || (unfinished_ == UnfinishedBag::kRemove && output == active_path_);
     if (std::any_of(inputs.begin(), inputs.end(),
                     [&](const std::string& input) { return sameFile(output, input); })) {
       throw BagError("cannot write " + output + ": it is the input");
     }
-    if (!overwrite && fs::exists(output)) {
+    if (!may_exist && fs::exists(output)) {
       throw BagError("cannot write " + output + ": it exists already (--force replaces it)");
     }
     if (fs::is_directory(output)) {
       throw BagError("cannot write " + output + ": it is a directory");
     }
   }
-  requireWritable(active_path_);
-  bag_ = std::make_unique<rosbag::Bag>();
-  guarded([&] {
-    bag_->open(active_path_, rosbag::bagmode::Write);
-    bag_->setCompression(compressionType(compression));
-  });
+}
+
+void BagWriter::claim() {
+  if (!lock_.take(active_path_)) {
+    throw BagError("cannot write " + path_ + ": another process is writing " + active_path_);
+  }
 }
 
 BagWriter::~BagWriter() {
@@ -127,6 +142,10 @@ BagWriter::~BagWriter() {
       // and so end the program: it must not run.
       static_cast<void>(bag_.release());
     }
+  }
+  if (lock_.isHeld()) {
+    std::error_code ignored;
+    fs::remove(active_path_, ignored);
   }
 }
 
@@ -145,6 +164,7 @@ void BagWriter::close() {
   if (error) {
     throw BagError("cannot rename " + active_path_ + " to " + path_ + ": " + error.message());
   }
+  lock_.release();
 }
 
 void BagWriter::fail(const std::exception& error) {
@@ -155,7 +175,9 @@ void BagWriter::fail(const std::exception& error) {
   if (cause != 0) {
     what += std::string(" (") + std::strerror(cause) + ")";
   }
-  throw BagError(what + "; what was written so far is left there, without an index");
+  throw BagError(what + (unfinished_ == UnfinishedBag::kRemove
+                             ? "; what was written so far is removed"
+                             : "; what was written so far is left there, without an index"));
 }
 
 }  // namespace fast_edi

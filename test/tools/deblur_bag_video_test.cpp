@@ -102,7 +102,7 @@ TEST_F(DeblurBagVideo, IsWrittenIntoTheBagWhenAskedFor) {
 TEST_F(DeblurBagVideo, RefusesWhatItCannotWrite) {
   const std::string film = " --video '" + path("film.mp4") + "'";
   for (const auto& [arguments, complaint] : std::vector<std::pair<std::string, std::string>>{
-           {"", "neither --out nor --video nor --frames is given"},
+           {"", "neither --out nor --out-dir nor --video nor --frames is given"},
            {film + " --fps 0", "--fps 0: expected 1..100000"},
            {" --video '" + path("film.webm") + "'", "expected .mp4, .mov or .avi"},
            {" --video '" + path("nowhere/film.mp4") + "'", "No such file or directory"}}) {

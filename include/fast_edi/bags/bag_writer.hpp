@@ -10,9 +10,18 @@
 #include <ros/time.h>
 #include <rosbag/bag.h>
 
+#include "fast_edi/bags/file_lock.hpp"
 #include "fast_edi/bags/message_source.hpp"
 
 namespace fast_edi {
+
+/// What becomes of PATH.active when the bag was not completed.
+enum class UnfinishedBag {
+  kKeep,  ///< it stays, so that `rosbag reindex` can save what it holds
+  /// It is removed. What another process that was killed has left is replaced; what one is still
+  /// writing is refused.
+  kRemove,
+};
 
 /// rosbag::Bag writing to PATH.active, renamed to PATH by close().
 class BagWriter {
@@ -22,8 +31,9 @@ class BagWriter {
   /// \param overwrite replace \p path and PATH.active if they exist
   /// \throws BagError for a path that cannot or may not be written
   BagWriter(const std::string& path, const std::vector<std::string>& inputs,
-            const std::string& compression, bool overwrite);
-  /// Leaves PATH.active behind when close() was not reached.
+            const std::string& compression, bool overwrite,
+            UnfinishedBag unfinished = UnfinishedBag::kKeep);
+  /// Leaves PATH.active behind, or removes it, when close() was not reached.
   ~BagWriter();
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
@@ -60,8 +70,13 @@ class BagWriter {
   }
   [[noreturn]] void fail(const std::exception& error);
 
-  std::string path_;
-  std::string active_path_;
+  void requireFree(const std::vector<std::string>& inputs, bool overwrite) const;
+  void claim();
+
+  const std::string path_;
+  const std::string active_path_;
+  const UnfinishedBag unfinished_;
+  FileLock lock_;  ///< of active_path_, while it is to be removed
   std::unique_ptr<rosbag::Bag> bag_;
 };
 
