@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -26,14 +26,6 @@ constexpr float kPaperReflectance = 0.80F;
 constexpr float kInkReflectance = 0.13F;
 constexpr double kMaxTurnRad = 0.2;
 constexpr int kSubpixelBits = 8;
-
-/// What image_u8_destroy() does; Debian has that function in a second library.
-struct ImageDeleter {
-  void operator()(image_u8_t* image) const {
-    std::free(image->buf);
-    std::free(image);
-  }
-};
 
 cv::Point toFixed(const cv::Point2d& plane, double scale, const cv::Mat& canvas) {
   const double unit = 1 << kSubpixelBits;
@@ -62,9 +54,20 @@ cv::Mat1b tagCells(int id) {
     throw std::invalid_argument("AprilTag 36h11: expected an id of 0 to " +
                                 std::to_string(family->ncodes - 1) + ", got " + std::to_string(id));
   }
-  const std::unique_ptr<image_u8_t, ImageDeleter> image(apriltag_to_image(family.get(), id));
-  return cv::Mat1b(image->height, image->width, image->buf, static_cast<std::size_t>(image->stride))
-      .clone();
+  // Not by apriltag_to_image(): that of libapriltag before 3.1.5 draws the white border where the
+  // black one belongs.
+  cv::Mat1b cells(kCells, kCells, std::uint8_t{255});
+  constexpr int kBorder = (kCells - kBlackCells) / 2;
+  cells(cv::Rect(kBorder, kBorder, kBlackCells, kBlackCells)).setTo(0);
+  const std::uint64_t code = family->codes[id];
+  for (std::uint32_t bit = 0; bit < family->nbits; ++bit) {
+    // The most significant bit comes first, and places count from the black border's outside.
+    if (((code >> (family->nbits - 1 - bit)) & 1U) != 0) {
+      cells(kBorder + static_cast<int>(family->bit_y[bit]),
+            kBorder + static_cast<int>(family->bit_x[bit])) = 255;
+    }
+  }
+  return cells;
 }
 
 std::vector<PlacedTag> placeTags(int count, double side_px, SensorSize view, RandomEngine& random) {

@@ -17,6 +17,5 @@ endif()
 get_target_property(apriltag_include_dirs apriltag::apriltag INTERFACE_INCLUDE_DIRECTORIES)
 find_file(APRILTAG_36H10_HEADER apriltag/tag36h10.h PATHS ${apriltag_include_dirs})
 if(NOT APRILTAG_36H10_HEADER)
-  message(WARNING "libapriltag is older than 3.2: no tags of the family 36h10, and the detector of 0.10, for "
-    "one, ends the process on some images. Do not run tag_detector in the manager of a camera.")
+  message(STATUS "libapriltag is older than 3.2: no tags of the family 36h10")
 endif()

@@ -8,6 +8,8 @@
 
 #include <apriltag/apriltag.h>
 
+#include "tags/searched_pixels.hpp"
+
 // Those of libapriltag before 3.2 (Debian 11, Ubuntu 20.04) do not say that they are C.
 extern "C" {
 #include <apriltag/tag16h5.h>
@@ -57,6 +59,13 @@ struct DestroyDetector {
 struct DestroyDetections {
   void operator()(zarray_t* detections) const { apriltag_detections_destroy(detections); }
 };
+
+/// libapriltag 3.2 brought the family 36h10 back, and had the fault of small frames mended.
+#ifdef FAST_EDI_HAVE_TAG36H10
+constexpr bool kNeedsManyPixels = false;
+#else
+constexpr bool kNeedsManyPixels = true;
+#endif
 
 constexpr int kMaxCorrectedBits = 2;
 /// libapriltag finds quads in tiles of this side; fewer than a few of them hold no tag.
@@ -140,7 +149,7 @@ TagDetection toTagDetection(const apriltag_detection_t& found) {
 class TagDetector::Impl {
  public:
   explicit Impl(const TagDetectorSettings& settings)
-      : family_(createFamily(settings.family)), detector_(nullptr) {
+      : family_(createFamily(settings.family)), detector_(nullptr), threads_(settings.threads) {
     checkSettings(settings, *family_);
     detector_.reset(apriltag_detector_create());
     if (!detector_) {
@@ -161,9 +170,15 @@ class TagDetector::Impl {
     if (image.cols < smallest || image.rows < smallest) {
       return tags;
     }
+    cv::Mat searched = image;
+    if (kNeedsManyPixels) {
+      const double decimate = static_cast<double>(detector_->quad_decimate);
+      searched = withEnoughRows(image, decimate);
+      detector_->nthreads = threadsWithEnoughPixels(searched.size(), decimate, threads_);
+    }
     // The library takes a non-const buffer but only reads it.
-    image_u8_t view = {image.cols, image.rows, static_cast<int>(image.step[0]),
-                       const_cast<std::uint8_t*>(image.data)};
+    image_u8_t view = {searched.cols, searched.rows, static_cast<int>(searched.step[0]),
+                       const_cast<std::uint8_t*>(searched.data)};
     const std::unique_ptr<zarray_t, DestroyDetections> found(
         apriltag_detector_detect(detector_.get(), &view));
     for (int i = 0; i < zarray_size(found.get()); ++i) {
@@ -181,6 +196,7 @@ class TagDetector::Impl {
   // The detector refers to the family: destroyed first.
   FamilyPointer family_;
   std::unique_ptr<apriltag_detector_t, DestroyDetector> detector_;
+  int threads_;
 };
 
 TagDetector::TagDetector(const TagDetectorSettings& settings)

@@ -130,6 +130,14 @@ TEST(AprilTagsTest, CellsAreThoseOfTheFamily) {
     EXPECT_EQ(cells(1, i), 0);
     EXPECT_EQ(cells(i, 8), 0);
   }
+  // Id 0 as apriltag_to_image() of libapriltag 3.2 draws it.
+  const cv::Mat1b inside = (cv::Mat1b(6, 6) << 1, 1, 0, 1, 0, 1,  //
+                            0, 1, 1, 1, 0, 1,                     //
+                            0, 1, 1, 0, 0, 0,                     //
+                            1, 0, 1, 0, 0, 0,                     //
+                            0, 1, 0, 1, 1, 0,                     //
+                            0, 0, 0, 1, 0, 0);
+  EXPECT_EQ(cv::countNonZero(cells(cv::Rect(2, 2, 6, 6)) != 255 * inside), 0);
   EXPECT_THROW(tagCells(-1), std::invalid_argument);
   EXPECT_THROW(tagCells(100'000), std::invalid_argument);
 }

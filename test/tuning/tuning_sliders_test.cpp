@@ -1,6 +1,8 @@
 #include "tuning/tuning_sliders.hpp"
 
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -17,7 +19,8 @@ std::vector<std::string> namesOf(const std::vector<Slider>& sliders) {
   return names;
 }
 
-const Slider& find(const std::vector<Slider>& sliders, const std::string& name) {
+// The name is no std::string, for GCC 13 takes the result for a part of one made for the call.
+const Slider& find(const std::vector<Slider>& sliders, const char* name) {
   for (const Slider& slider : sliders) {
     if (slider.name() == name) {
       return slider;

@@ -12,7 +12,7 @@
 namespace fast_edi {
 
 /// Families that can be detected, by libapriltag's names without their "tag". 36h10 needs
-/// libapriltag 3.2. Older ones (0.10 of Debian 11) also end the process on some images.
+/// libapriltag 3.2.
 constexpr std::array<const char*, 9> kTagFamilies = {
     "36h11",       "36h10",       "25h9",          "16h5",          "Circle21h7",
     "Circle49h12", "Custom48h12", "Standard41h12", "Standard52h13",
