@@ -4,11 +4,13 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 import xmlrpc.client
 
 import roslib.packages
 import rosgraph
+import rospy
 
 POLL_S = 0.02
 STOP_TIMEOUT_S = 30  # roslaunch itself waits for half of that
@@ -75,6 +77,14 @@ def use_own_master():
 
 def wait_for_master(timeout_s):
     wait_until(rosgraph.is_master_online, timeout_s, 'the ROS master to answer')
+
+
+def leave_ros():
+    """Ends rospy in this process."""
+    if not hasattr(threading.Thread, 'isAlive'):
+        # Debian 11's rospy still asks for it, though Python has not had it since 3.9.
+        threading.Thread.isAlive = threading.Thread.is_alive
+    rospy.signal_shutdown('done')
 
 
 def pid_of(node):
