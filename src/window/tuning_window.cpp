@@ -9,6 +9,19 @@
 namespace fast_edi {
 namespace {
 
+/// As X11 numbers them; highgui gives the first a number of its own.
+constexpr int kTab = '\t';
+constexpr int kBackTab = 0xfe20;
+constexpr int kKeyBits = 0xffff;
+/// Home, arrows, Page Up and Down, End.
+constexpr int kFirstCursorKey = 0xff50;
+constexpr int kLastCursorKey = 0xff57;
+
+/// Keys by which GTK, too, moves the slider in focus: those that the tool wants for itself.
+bool isStep(int key) {
+  return key == '+' || key == '-' || key == '=';
+}
+
 bool isSet(const char* variable) {
   const char* value = std::getenv(variable);
   return value != nullptr && *value != '\0';
@@ -30,7 +43,7 @@ TuningWindow::TuningWindow(std::string name, const std::vector<Slider>& sliders,
   cv::namedWindow(name_, cv::WINDOW_AUTOSIZE | cv::WINDOW_GUI_NORMAL);
   trackbars_.reserve(sliders.size());
   for (const Slider& slider : sliders) {
-    trackbars_.push_back({slider.name(), trackbars_.size(), this});
+    trackbars_.push_back({slider.name(), trackbars_.size(), 0, 0, this});
     cv::createTrackbar(slider.name(), name_, nullptr, slider.lastPosition(), trackbarMoved,
                        &trackbars_.back());
   }
@@ -49,11 +62,40 @@ void TuningWindow::show(const cv::Mat& picture, const std::string& title) {
 
 void TuningWindow::moveSlider(std::size_t slider, int position) {
   cv::setTrackbarPos(trackbars_[slider].name, name_, position);
+  report();
 }
 
 int TuningWindow::waitKey() {
   constexpr int kMoment_ms = 50;
-  return cv::waitKeyEx(kMoment_ms);
+  const int key = cv::waitKeyEx(kMoment_ms);
+  const int plain = key == kNoKey ? kNoKey : key & kKeyBits;
+  if (isStep(plain)) {
+    putBack();
+    return key;
+  }
+  const bool has_moved = report();
+  const bool is_cursor = plain >= kFirstCursorKey && plain <= kLastCursorKey;
+  return (has_moved && is_cursor) || plain == kTab || plain == kBackTab ? kNoKey : key;
+}
+
+bool TuningWindow::report() {
+  bool moved = false;
+  for (Trackbar& trackbar : trackbars_) {
+    if (trackbar.now != trackbar.position) {
+      trackbar.position = trackbar.now;
+      moved_(trackbar.slider, trackbar.now);
+      moved = true;
+    }
+  }
+  return moved;
+}
+
+void TuningWindow::putBack() {
+  for (const Trackbar& trackbar : trackbars_) {
+    if (trackbar.now != trackbar.position) {
+      cv::setTrackbarPos(trackbar.name, name_, trackbar.position);
+    }
+  }
 }
 
 bool TuningWindow::isOpen() const {
@@ -61,8 +103,7 @@ bool TuningWindow::isOpen() const {
 }
 
 void TuningWindow::trackbarMoved(int position, void* trackbar) {
-  const auto* moved = static_cast<const Trackbar*>(trackbar);
-  moved->window->moved_(moved->slider, position);
+  static_cast<Trackbar*>(trackbar)->now = position;
 }
 
 }  // namespace fast_edi

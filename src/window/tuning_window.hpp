@@ -29,7 +29,9 @@ class TuningWindow {
 
   void show(const cv::Mat& picture, const std::string& title);
   void moveSlider(std::size_t slider, int position);
-  /// Gives the window its time, until a key comes or for a moment.
+  /// Gives the window its time, until a key comes or for a moment. What the keyboard does to the
+  /// slider in focus (Tab, arrows) is no key, while + and - are keys and nothing else, as with
+  /// highgui's Qt; with GTK, both get each key.
   /// \return the key as cv::waitKeyEx() has it, or kNoKey
   int waitKey();
   static constexpr int kNoKey = -1;
@@ -40,9 +42,14 @@ class TuningWindow {
   struct Trackbar {
     std::string name;
     std::size_t slider = 0;
+    int position = 0;  ///< as far as Moved knows
+    int now = 0;
     TuningWindow* window = nullptr;
   };
   static void trackbarMoved(int position, void* trackbar);
+  /// Tells of the sliders that have moved.
+  bool report();
+  void putBack();
 
   const std::string name_;
   const Moved moved_;

@@ -2,9 +2,11 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <string>
 
 #include <gmock/gmock.h>
+#include <opencv2/core/utility.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "fast_edi/config/parameters_from_yaml.hpp"
@@ -25,6 +27,12 @@ namespace fs = std::filesystem;
 const std::string kTools = std::string(FAST_EDI_TOOLS_DIR) + "/";
 const std::string kPressKeys = std::string("'") + FAST_EDI_SOURCE_DIR + "/test/tools/press_keys' ";
 const std::string kConfig = std::string(FAST_EDI_SOURCE_DIR) + "/cfg/davis346.yaml";
+
+/// Keys that put the first slider into focus, which highgui leaves to its toolkit.
+std::string firstSlider() {
+  const std::regex qt(R"(QT:\s+YES)");
+  return std::regex_search(cv::getBuildInformation(), qt) ? "Tab= Tab= " : "Tab= ";
+}
 
 class TuneTest : public ::testing::Test {
  protected:
@@ -60,15 +68,15 @@ class TuneTest : public ::testing::Test {
 TEST_F(TuneTest, KeysChangeWhatIsSaved) {
   simulate("");
   // Tab and the arrows are for the window's own slider, the others are keys of the tool.
-  const CommandResult result =
-      runCommand(kPressKeys + "'tune: frame 3, contrast_threshold_on 0.3$' " +
-                 "n='frame 4, contrast_threshold_on 0.3$' plus='contrast_threshold_on 0.307$' " +
-                 "greater='contrast_threshold_on 0.375$' Tab= Tab= Right= "
-                 "Right='frame 4, contrast_threshold_on 0.3[89].$' j='contrast_threshold_off 0.2$' "
-                 "minus='contrast_threshold_off 0.195$' p='frame 3, ' x='h shows the keys' "
-                 "h='contrast_threshold_off 0.195$' s='saved to' q= -- " +
-                 tune("--config " + kConfig +
-                      " --frame 3 contrast_threshold_on:=0.3 contrast_threshold_off:=0.2"));
+  const CommandResult result = runCommand(
+      kPressKeys + "'tune: frame 3, contrast_threshold_on 0.3$' " +
+      "n='frame 4, contrast_threshold_on 0.3$' plus='contrast_threshold_on 0.307$' " +
+      "greater='contrast_threshold_on 0.375$' " + firstSlider() +
+      "Right= Right='frame 4, contrast_threshold_on 0.3[89].$' j='contrast_threshold_off 0.2$' "
+      "minus='contrast_threshold_off 0.195$' p='frame 3, ' x='h shows the keys' "
+      "h='contrast_threshold_off 0.195$' s='saved to' q= -- " +
+      tune("--config " + kConfig +
+           " --frame 3 contrast_threshold_on:=0.3 contrast_threshold_off:=0.2"));
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_THAT(result.output, AllOf(HasSubstr("written: " + saved_),
                                    HasSubstr("deblur_bag --in " + bag_), HasSubstr(saved_)));
