@@ -72,7 +72,7 @@ TEST_F(TuneTest, KeysChangeWhatIsSaved) {
       kPressKeys + "'tune: frame 3, contrast_threshold_on 0.3$' " +
       "n='frame 4, contrast_threshold_on 0.3$' plus='contrast_threshold_on 0.307$' " +
       "greater='contrast_threshold_on 0.375$' " + firstSlider() +
-      "Right= Right='frame 4, contrast_threshold_on 0.3[89].$' j='contrast_threshold_off 0.2$' "
+      "Right= Right='frame 4, contrast_threshold_on 0.3[89]' j='contrast_threshold_off 0.2$' "
       "minus='contrast_threshold_off 0.195$' p='frame 3, ' x='h shows the keys' "
       "h='contrast_threshold_off 0.195$' s='saved to' q= -- " +
       tune("--config " + kConfig +
