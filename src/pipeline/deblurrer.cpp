@@ -237,8 +237,8 @@ void Deblurrer::Impl::deblur(ClosedFrame& frame) {
       window.start_ns + (output.exposure.at(parameters_.reference) - output.exposure.start_ns);
 
   prepareIntegral(true);
-  const IntegrationReport report =
-      integral_.integrate(*events_.lists(), window, reference_ns, parameters_.filter.enabled);
+  const IntegrationReport report = integral_.integrate(*events_.lists(), window, reference_ns,
+                                                       WindowIntegral::countingFor(parameters_));
   const bool learns = refinement_.wantsFrame();
   if (learns) {
     refinement_.keepGains(integral_.gains());
@@ -309,7 +309,7 @@ void Deblurrer::Impl::predictWindow() {
 
 void Deblurrer::Impl::accumulate() {
   if (!parameters_.passthrough && events_.lists() != nullptr && prepareIntegral(false)) {
-    integral_.accumulate(*events_.lists(), parameters_.filter.enabled);
+    integral_.accumulate(*events_.lists(), WindowIntegral::countingFor(parameters_));
   }
 }
 

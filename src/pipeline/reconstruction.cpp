@@ -37,12 +37,12 @@ void Reconstruction::render(const Frame& frame, WindowIntegral& integral, const 
   const MutableImageView image = sink_.begin(input);
   if (image.data != nullptr) {
     latent_image_.write(input.image, integral.gains().data(), counts, parameters.response, image);
-    if (filter.enabled && filter.reblur && parameters.reference == ExposureInstant::kMid &&
+    if (WindowIntegral::countingFor(parameters) == WindowIntegral::Counting::kQuarters &&
         Reblur::supports(image.format, parameters.response)) {
-      reblur_.apply(
-          {frame.window, latent_image_.blurryLevels().data(), latent_image_.meanCounts(),
-           latent_image_.frameNoise(), integral.counts().data(), latent_image_.cleanLevels()},
-          lists, model, parameters.response, image);
+      reblur_.apply({frame.window, latent_image_.blurryLevels().data(), latent_image_.meanCounts(),
+                     latent_image_.frameNoise(), integral.counts().data(), &integral.quarters(),
+                     latent_image_.cleanLevels()},
+                    lists, model, parameters.response, image);
       sink_.noteTrust(reblur_.trust());
     }
   }

@@ -19,6 +19,15 @@ bool WindowIntegral::areNear(const Prediction& a, const Prediction& b) {
          isNear(a.reference_ns, b.reference_ns);
 }
 
+WindowIntegral::Counting WindowIntegral::countingFor(const DeblurParameters& parameters) {
+  if (!parameters.filter.enabled) {
+    return Counting::kNone;
+  }
+  return parameters.filter.reblur && parameters.reference == ExposureInstant::kMid
+             ? Counting::kQuarters
+             : Counting::kWindow;
+}
+
 bool WindowIntegral::prepare(EventStream& events, const DeblurParameters& parameters,
                              bool may_allocate) {
   if (!integral_ || size_ != events.lists()->size()) {
@@ -31,12 +40,14 @@ bool WindowIntegral::prepare(EventStream& events, const DeblurParameters& parame
                                                  levelModel(parameters));
     gains_.resize(size_.pixelCount());
     counts_.emplace(size_);
+    quarters_.reset();
     predicted_.reset();
   }
   events.keepIntervals(!integral_->level().isStaircase());
   if (generation_ != events.generation()) {
     integral_->reset();
     counts_->reset();
+    quarters_.reset();
     generation_ = events.generation();
     predicted_.reset();
   }
@@ -63,27 +74,43 @@ void WindowIntegral::predictWindow(const ExposureInterval& window, std::int64_t 
   }
 }
 
-void WindowIntegral::accumulate(const PixelEventLists& lists, bool counts) {
+void WindowIntegral::wantQuarters(Counting counting) {
+  if (counting != Counting::kQuarters) {
+    quarters_.reset();
+  } else if (!quarters_) {
+    quarters_.emplace(size_);
+  }
+}
+
+void WindowIntegral::accumulate(const PixelEventLists& lists, Counting counting) {
   integral_->accumulate(lists);
-  if (counts && predicted_) {
+  wantQuarters(counting);
+  if (counting != Counting::kNone && predicted_) {
     counts_->accumulate(lists, predicted_->window);
+    if (quarters_) {
+      quarters_->accumulate(lists, predicted_->window);
+    }
   }
 }
 
 IntegrationReport WindowIntegral::integrate(const PixelEventLists& lists,
                                             const ExposureInterval& window,
-                                            std::int64_t reference_ns, bool counts) {
+                                            std::int64_t reference_ns, Counting counting) {
   const IntegrationReport report = integral_->integrate(lists, window, reference_ns, gains_.data());
   predicted_.reset();
-  if (counts) {
+  wantQuarters(counting);
+  if (counting != Counting::kNone) {
     counts_->count(lists, window);
+    if (quarters_) {
+      quarters_->count(lists, window);
+    }
   }
   return report;
 }
 
 std::size_t WindowIntegral::memoryBytes() const {
   return gains_.capacity() * sizeof(float) + (integral_ ? integral_->memoryBytes() : 0) +
-         (counts_ ? counts_->memoryBytes() : 0);
+         (counts_ ? counts_->memoryBytes() : 0) + (quarters_ ? quarters_->memoryBytes() : 0);
 }
 
 }  // namespace fast_edi

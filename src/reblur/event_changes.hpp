@@ -2,11 +2,12 @@
 /// What the events say about the change of each pixel's log intensity from mid-exposure to three
 /// other instants of the exposure.
 ///
-/// Only the events of its second half are looked at. Those of the first are what is left of the
-/// counts of the whole exposure. Steps that have only begun at an instant (see level_model.hpp) are
-/// added, too, except where pixels have so many events that a part of a step matters little.
+/// Events were counted as they came: those of the whole exposure (EventCounts) and of the quarters
+/// after its middle (LaterQuarters). Steps that have only begun at an instant (see level_model.hpp)
+/// are added, too, except where pixels have so many events that a part of a step matters little.
 ///
-/// Complexity. O(events in half the exposure + pixels).
+/// Complexity. O(events within the longest ramp after the start, the middle and the third quarter +
+/// pixels).
 #pragma once
 
 #include <array>
@@ -17,6 +18,7 @@
 #include "fast_edi/base/types.hpp"
 #include "fast_edi/events/pixel_event_lists.hpp"
 #include "fast_edi/integral/latent_gains.hpp"
+#include "reblur/later_quarters.hpp"
 
 namespace fast_edi {
 
@@ -30,9 +32,11 @@ class EventChanges {
 
   /// \param window of the exposure, in event time
   /// \param counts OFF and ON events of each pixel in the window, interleaved
+  /// \param quarters of the same window and size
   /// \pre the lists keep intervals unless the level model is the staircase
   void measure(const PixelEventLists& lists, const ExposureInterval& window,
-               const std::uint16_t* counts, const LatentGains::Model& model);
+               const std::uint16_t* counts, const LaterQuarters& quarters,
+               const LatentGains::Model& model);
 
   /// log L(x, tau) - log L(x, 0) of all pixels, row-major.
   const std::vector<float>& at(std::size_t instant) const { return change_[instant]; }
@@ -40,7 +44,7 @@ class EventChanges {
   std::size_t memoryBytes() const;
 
  private:
-  std::vector<float> middle_;  ///< steps that have begun in the middle
+  std::vector<float> middle_;  ///< scratch: steps that have begun in the middle
   std::array<std::vector<float>, kInstants> change_;
 };
 

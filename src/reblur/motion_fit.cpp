@@ -118,6 +118,59 @@ void raise(const float* __restrict count, std::size_t pixels, float* __restrict 
   }
 }
 
+struct Positions {
+  const float* relative_x;
+  const float* relative_y;
+  const float* x;
+  const float* y;
+};
+/// Moves pixels by B(x) c.
+FAST_EDI_VECTOR_CLONES
+void movePixels(const Positions& from, std::size_t count, const ImageMotion::Parts& c, float per_px,
+                float* __restrict x, float* __restrict y) {
+  const float* __restrict right = from.relative_x;
+  const float* __restrict down = from.relative_y;
+  const float* __restrict from_x = from.x;
+  const float* __restrict from_y = from.y;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float zoom = c[2] + c[4] * right[i] + c[5] * down[i];
+    x[i] = from_x[i] + per_px * (c[0] + zoom * right[i] - c[3] * down[i]);
+    y[i] = from_y[i] + per_px * (c[1] + c[3] * right[i] + zoom * down[i]);
+  }
+}
+
+/// Four pixels of a row.
+using Quad = float __attribute__((vector_size(4 * sizeof(float))));
+
+/// Value and twice the gradient between pixels, all interpolated linearly.
+struct Sample {
+  float value;
+  float across;
+  float down;
+};
+Sample sampleAt(const float* plane, std::ptrdiff_t width, float x, float y) {
+  const auto left = static_cast<std::ptrdiff_t>(x);
+  const auto top = static_cast<std::ptrdiff_t>(y);
+  const float fx = x - static_cast<float>(left);
+  const float fy = y - static_cast<float>(top);
+  const float* from = plane + (top - 1) * width + left - 1;
+  Quad above;
+  Quad upper;
+  Quad lower;
+  Quad below;
+  std::memcpy(&above, from, sizeof(above));
+  std::memcpy(&upper, from + width, sizeof(upper));
+  std::memcpy(&lower, from + 2 * width, sizeof(lower));
+  std::memcpy(&below, from + 3 * width, sizeof(below));
+  const Quad rise = lower - upper;
+  const Quad value = upper + fy * rise;
+  above = lower - above;
+  const Quad down = above + fy * ((below - upper) - above);
+  const float across = value[2] - value[0];
+  return {value[1] + fx * (value[2] - value[1]), across + fx * ((value[3] - value[1]) - across),
+          down[1] + fx * (down[2] - down[1])};
+}
+
 /// Weights from residuals, and slopes of the residuals by the parts of a motion.
 struct SamplePlanes {
   const float* x;  ///< relative positions
@@ -228,12 +281,18 @@ void MotionFit::loadChosen(const EventChanges& changes, const float* mean_counts
   chosen_.x.resize(count);
   chosen_.y.resize(count);
   chosen_.value.resize(count);
+  relative_x_.assign((count + kFloatBlock - 1) / kFloatBlock * kFloatBlock, 0.0F);
+  relative_y_.assign(relative_x_.size(), 0.0F);
+  const ImageMotion still(size_);
+  const auto scale = static_cast<float>(1u << level_index);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t pixel = chosen_.pixel[i];
     const std::uint32_t row = pixel / width;
     chosen_.x[i] = static_cast<float>(pixel % width);
     chosen_.y[i] = static_cast<float>(row);
     chosen_.value[i] = level.log_image[pixel];
+    relative_x_[i] = still.relativeX((chosen_.x[i] + kHalf) * scale - kHalf);
+    relative_y_[i] = still.relativeY((chosen_.y[i] + kHalf) * scale - kHalf);
   }
   for (std::size_t k = 0; k < kInstants; ++k) {
     std::vector<float>& out = chosen_.change[k];
@@ -258,50 +317,28 @@ void MotionFit::loadChosen(const EventChanges& changes, const float* mean_counts
 /// Residuals and gradients where the chosen pixels have moved to; weight 0 for what left the image.
 void MotionFit::samplePixels(const Level& level, std::size_t instant, float scale,
                              const FittedMotion& fitted) {
-  const ImageMotion& motion = fitted.motion;
-  const ImageMotion::Parts c = motion.at(EventChanges::kTau[instant]);
   const auto width = static_cast<std::ptrdiff_t>(level.size.width);
   const auto right = static_cast<float>(level.size.width - 3);
   const auto bottom = static_cast<float>(level.size.height - 3);
   const float per_px = 1.0F / scale;
   const float half_per_px = kHalf * per_px * fitted.event_share;
   const std::vector<float>& change = chosen_.change[instant];
-  float* gradient_x = samples_[kGradientX].data();
-  float* gradient_y = samples_[kGradientY].data();
-  float* share = samples_[kShare].data();
-  float* weight = samples_[kWeight].data();
-  float* residual = samples_[kResidual].data();
+  moved_x_.resize(relative_x_.size());
+  moved_y_.resize(relative_x_.size());
+  movePixels({relative_x_.data(), relative_y_.data(), chosen_.x.data(), chosen_.y.data()},
+             chosen_.size(), fitted.motion.at(EventChanges::kTau[instant]), per_px, moved_x_.data(),
+             moved_y_.data());
   for (std::size_t i = 0; i < chosen_.size(); ++i) {
-    const float at_x = (chosen_.x[i] + kHalf) * scale - kHalf;  // at full resolution
-    const float at_y = (chosen_.y[i] + kHalf) * scale - kHalf;
-    const Displacement u = motion.displace(c, at_x, at_y);
-    const float x = chosen_.x[i] + u.x * per_px;
-    const float y = chosen_.y[i] + u.y * per_px;
-    relative_x_[i] = motion.relativeX(at_x);
-    relative_y_[i] = motion.relativeY(at_y);
-    if (!(x >= 1.0F && y >= 1.0F && x < right && y < bottom)) {
-      gradient_x[i] = gradient_y[i] = share[i] = weight[i] = residual[i] = 0.0F;
-      continue;
-    }
-    const auto left = static_cast<std::ptrdiff_t>(x);
-    const auto top = static_cast<std::ptrdiff_t>(y);
-    const float fx = x - static_cast<float>(left);
-    const float fy = y - static_cast<float>(top);
-    const float* above = level.log_image.data() + (top - 1) * width + left;
-    const float* upper = above + width;
-    const float* lower = upper + width;
-    const float* below = lower + width;
-    const auto between = [&](float a, float b, float d, float e) {
-      const float over = a + fx * (b - a);
-      return over + fy * (d + fx * (e - d) - over);
-    };
-    share[i] = between(upper[0], upper[1], lower[0], lower[1]) - chosen_.value[i];
-    residual[i] = fitted.event_share * share[i] - change[i];
-    gradient_x[i] = half_per_px * between(upper[1] - upper[-1], upper[2] - upper[0],
-                                          lower[1] - lower[-1], lower[2] - lower[0]);
-    gradient_y[i] = half_per_px * between(lower[0] - above[0], lower[1] - above[1],
-                                          below[0] - upper[0], below[1] - upper[1]);
-    weight[i] = 1.0F;
+    const float x = moved_x_[i];
+    const float y = moved_y_[i];
+    const bool inside = x >= 1.0F && y >= 1.0F && x < right && y < bottom;
+    const Sample sample = inside ? sampleAt(level.log_image.data(), width, x, y) : Sample{};
+    const float share = inside ? sample.value - chosen_.value[i] : 0.0F;
+    samples_[kShare][i] = share;
+    samples_[kResidual][i] = inside ? fitted.event_share * share - change[i] : 0.0F;
+    samples_[kGradientX][i] = half_per_px * sample.across;
+    samples_[kGradientY][i] = half_per_px * sample.down;
+    samples_[kWeight][i] = inside ? 1.0F : 0.0F;
   }
 }
 
@@ -313,8 +350,6 @@ MotionEquations::Sums MotionFit::sumAt(const Level& level, std::size_t instant, 
     plane.resize(count);
     std::fill(plane.begin() + static_cast<std::ptrdiff_t>(chosen_.size()), plane.end(), 0.0F);
   }
-  relative_x_.resize(count);
-  relative_y_.resize(count);
   samplePixels(level, instant, scale, fitted);
   fillSlopes({relative_x_.data(), relative_y_.data(), samples_[kGradientX].data(),
               samples_[kGradientY].data(), samples_[kZoom].data(), samples_[kTurn].data(),
@@ -396,10 +431,10 @@ FittedMotion MotionFit::fit(const float* log_image, const EventChanges& changes,
 }
 
 std::size_t MotionFit::memoryBytes() const {
-  std::size_t floats = rows_.capacity() + relative_x_.capacity() + relative_y_.capacity() +
-                       chosen_.x.capacity() + chosen_.y.capacity() + chosen_.value.capacity() +
-                       capacityOf(chosen_.change.data(), kInstants) +
-                       capacityOf(samples_.data(), kPlanes);
+  std::size_t floats =
+      rows_.capacity() + relative_x_.capacity() + relative_y_.capacity() + moved_x_.capacity() +
+      moved_y_.capacity() + chosen_.x.capacity() + chosen_.y.capacity() + chosen_.value.capacity() +
+      capacityOf(chosen_.change.data(), kInstants) + capacityOf(samples_.data(), kPlanes);
   for (const Level& level : levels_) {
     floats += level.log_image.capacity() + level.count.capacity() +
               capacityOf(level.change.data(), kInstants);

@@ -99,6 +99,8 @@ class MotionFit {
   Chosen chosen_;
   std::vector<float> relative_x_;  ///< of the chosen pixels, in the units of ImageMotion
   std::vector<float> relative_y_;
+  std::vector<float> moved_x_;  ///< of them, where they have moved to, in pixels of the level
+  std::vector<float> moved_y_;
   std::array<std::vector<float>, kPlanes> samples_;
 };
 

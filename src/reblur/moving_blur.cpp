@@ -10,11 +10,11 @@ namespace {
 
 using Tap = SceneLayout::Tap;
 
-/// Taps of one row at one instant.
+/// Taps of rows alike at one instant.
 FAST_EDI_VECTOR_CLONES
 void fillTaps(const ImageMotion& motion, const ImageMotion::Parts& c, const SceneLayout& layout,
               std::size_t row, Tap* taps) {
-  const auto y = static_cast<float>(row);
+  const float y = SceneLayout::centreOfRows(row);
   for (std::size_t block = 0; block < layout.blocks(); ++block) {
     taps[block] = layout.tap(block, row, motion.displace(c, SceneLayout::centreOf(block), y));
   }
@@ -86,20 +86,16 @@ void scatterLast(const float* in, const Tap* taps, std::size_t blocks, std::size
   }
 }
 
-FAST_EDI_VECTOR_CLONES
-void multiply(const float* __restrict by, std::size_t count, float* __restrict values) {
-  for (std::size_t i = 0; i < count; ++i) {
-    values[i] *= by[i];
-  }
-}
-
-/// Takes away a part of each pixel's neighbours; not in the first and last row.
+/// Takes away a part of each pixel's neighbours.
 FAST_EDI_VECTOR_CLONES
 void subtractNeighbours(const float* __restrict in, std::size_t count, std::size_t stride, float x,
                         float y, float* __restrict out) {
   const float centre = 1.0F + 2.0F * (x + y);
-  for (std::size_t i = stride; i < count - stride; ++i) {
-    out[i] = centre * in[i] - x * (in[i - 1] + in[i + 1]) - y * (in[i - stride] + in[i + stride]);
+  const float* __restrict left = in - 1;
+  const float* __restrict above = in - stride;
+  const float* __restrict below = in + stride;
+  for (std::size_t i = 0; i < count; ++i) {
+    out[i] = centre * in[i] - x * (left[i] + in[i + 1]) - y * (above[i] + below[i]);
   }
 }
 
@@ -114,48 +110,62 @@ void scale(std::size_t count, float by, float* values) {
 
 void MovingBlur::set(const ImageMotion& motion, const SceneLayout& layout, std::size_t instants) {
   constexpr double kHalf = 0.5;
-  constexpr std::size_t kRowsApart = 4;  // of those that the lost part is measured in
   layout_ = layout;
   instants_ = instants;
-  taps_.resize(layout.rows() * instants * layout.blocks());
-  double lost_x = 0.0;
-  double lost_y = 0.0;
-  std::size_t looked_at = 0;
-  for (std::size_t k = 0; k < instants; ++k) {
-    const float tau = static_cast<float>(2 * k + 1) / static_cast<float>(instants) - 1.0F;
-    const ImageMotion::Parts c = motion.at(tau);
-    for (std::size_t y = 0; y < layout.rows(); ++y) {
-      Tap* taps = taps_.data() + tapsBefore(y) + k * layout.blocks();
-      fillTaps(motion, c, layout, y, taps);
-      if (y % kRowsApart != 0) {
-        continue;
-      }
-      for (const Tap* tap = taps; tap < taps + layout.blocks(); ++tap, ++looked_at) {
-        lost_x += static_cast<double>(tap->x * (1.0F - tap->x));
-        lost_y += static_cast<double>(tap->y * (1.0F - tap->y));
-      }
+  const std::size_t groups = (layout.rows() + kRowsAlike - 1) / kRowsAlike;
+  taps_.resize(groups * instants * layout.blocks());
+  Tap* taps = taps_.data();
+  for (std::size_t row = 0; row < layout.rows(); row += kRowsAlike) {
+    for (std::size_t k = 0; k < instants; ++k, taps += layout.blocks()) {
+      const float tau = static_cast<float>(2 * k + 1) / static_cast<float>(instants) - 1.0F;
+      fillTaps(motion, motion.at(tau), layout, row, taps);
     }
   }
-  lost_x_ = static_cast<float>(kHalf * lost_x / static_cast<double>(looked_at));
-  lost_y_ = static_cast<float>(kHalf * lost_y / static_cast<double>(looked_at));
+  double lost_x = 0.0;
+  double lost_y = 0.0;
+  for (const Tap& tap : taps_) {
+    lost_x += static_cast<double>(tap.x * (1.0F - tap.x));
+    lost_y += static_cast<double>(tap.y * (1.0F - tap.y));
+  }
+  lost_x_ = static_cast<float>(kHalf * lost_x / static_cast<double>(taps_.size()));
+  lost_y_ = static_cast<float>(kHalf * lost_y / static_cast<double>(taps_.size()));
   sharpened_.resize(layout.sceneFloats());
   sum_.resize(layout.sceneFloats());
   row_.resize(layout.stride());
   shifted_.assign(layout.stride(), 0.0F);
 }
 
-/// S, which is symmetric but for the first and last row: no tap reaches them.
-void MovingBlur::sharpen(const float* in, float* out) const {
+/// A row of S, which is symmetric but for the first and last row: no tap reaches them.
+void MovingBlur::sharpenRow(const float* in, std::size_t row, float* out) const {
   const std::size_t stride = layout_.sceneStride();
-  const std::size_t count = layout_.sceneFloats();
-  std::copy(in, in + stride, out);
-  std::copy(in + count - stride, in + count, out + count - stride);
-  subtractNeighbours(in, count, stride, lost_x_, lost_y_, out);
+  const std::size_t first = row * stride;
+  if (row == 0 || row + 1 == layout_.sceneRows()) {
+    std::copy_n(in + first, stride, out + first);
+  } else {
+    subtractNeighbours(in + first, stride, stride, lost_x_, lost_y_, out + first);
+  }
 }
 
-void MovingBlur::gather(std::size_t row, float* out) const {
-  gatherRow(sharpened_.data(), layout_.sceneStride(), taps_.data() + tapsBefore(row),
-            layout_.blocks(), instants_, out);
+/// Sharpens what the row that was just prepared completes. \return how many rows are sharp
+std::size_t MovingBlur::sharpenBehind(const float* scene, std::size_t prepared) {
+  if (prepared > 0) {
+    sharpenRow(scene, prepared - 1, sharpened_.data());
+  }
+  if (prepared + 1 < layout_.sceneRows()) {
+    return prepared;
+  }
+  sharpenRow(scene, prepared, sharpened_.data());
+  return prepared + 1;
+}
+
+void MovingBlur::clearSum(std::size_t row) {
+  std::fill_n(sum_.data() + row * layout_.sceneStride(), layout_.sceneStride(), 0.0F);
+}
+
+/// To row_.
+void MovingBlur::gather(std::size_t row) {
+  gatherRow(sharpened_.data() + fromFirst(row), layout_.sceneStride(), tapsOf(row),
+            layout_.blocks(), instants_, row_.data());
 }
 
 /// Adds row_ to sum_.
@@ -165,39 +175,32 @@ void MovingBlur::scatter(std::size_t row) {
   for (std::size_t i = 0; i < shifted_.size(); i += kFloatBlock) {
     shifted_[i] = 0.0F;
   }
-  const Tap* taps = taps_.data() + tapsBefore(row);
+  float* sum = sum_.data() + fromFirst(row);
+  const Tap* taps = tapsOf(row);
   for (std::size_t k = 0; k < instants_; ++k, taps += layout_.blocks()) {
-    scatterBlocks(row_.data(), shifted_.data(), taps, layout_.blocks(), layout_.sceneStride(),
-                  sum_.data());
-    scatterLast(row_.data(), taps, layout_.blocks(), layout_.sceneStride(), sum_.data());
+    scatterBlocks(row_.data(), shifted_.data(), taps, layout_.blocks(), layout_.sceneStride(), sum);
+    scatterLast(row_.data(), taps, layout_.blocks(), layout_.sceneStride(), sum);
   }
 }
 
 void MovingBlur::apply(const float* scene, float* image) {
-  sharpen(scene, sharpened_.data());
-  for (std::size_t y = 0; y < layout_.rows(); ++y) {
-    gather(y, image + y * layout_.stride());
-  }
+  const std::size_t stride = layout_.stride();
+  applyRows(
+      scene, [](std::size_t) {},
+      [&](std::size_t row, const float* values) {
+        std::copy_n(values, stride, image + row * stride);
+      });
 }
 
 void MovingBlur::applyTransposed(const float* image, float* scene) {
   std::fill(sum_.begin(), sum_.end(), 0.0F);
-  for (std::size_t y = 0; y < layout_.rows(); ++y) {
-    std::copy_n(image + y * layout_.stride(), layout_.stride(), row_.data());
-    scatter(y);
+  for (std::size_t row = 0; row < layout_.rows(); ++row) {
+    std::copy_n(image + row * layout_.stride(), layout_.stride(), row_.data());
+    scatter(row);
   }
-  sharpen(sum_.data(), scene);
-}
-
-void MovingBlur::applyNormal(const float* scene, const float* weights, float* out) {
-  sharpen(scene, sharpened_.data());
-  std::fill(sum_.begin(), sum_.end(), 0.0F);
-  for (std::size_t y = 0; y < layout_.rows(); ++y) {
-    gather(y, row_.data());
-    multiply(weights + y * layout_.stride(), row_.size(), row_.data());
-    scatter(y);
+  for (std::size_t row = 0; row < layout_.sceneRows(); ++row) {
+    sharpenRow(sum_.data(), row, scene);
   }
-  sharpen(sum_.data(), out);
 }
 
 std::size_t MovingBlur::memoryBytes() const {

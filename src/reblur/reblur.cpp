@@ -50,7 +50,7 @@ void Reblur::fitMotion(const Frame& frame, const PixelEventLists& lists,
   constexpr double kHalf = 0.5;
   log_.resize(level_dn_.size());
   logLevels(level_dn_.data(), level_dn_.size(), offset_dn, log_.data());
-  changes_.measure(lists, frame.window, frame.counts, model);
+  changes_.measure(lists, frame.window, frame.counts, *frame.quarters, model);
   const auto contrast = static_cast<float>(kHalf * (model.thresholds.on + model.thresholds.off));
   fitted_ = fit_->fit(log_.data(), changes_, frame.mean_counts, contrast);
 }

@@ -13,7 +13,7 @@
 /// Limits. Monochrome frames of a linear camera response whose latent image shows mid-exposure; one
 /// motion for the whole image, of at least 32 x 32 pixels.
 ///
-/// Complexity. O(events in the exposure + pixels); memory once used about 130 B per pixel.
+/// Complexity. O(pixels); memory once used about 130 B per pixel.
 #pragma once
 
 #include <memory>
@@ -24,6 +24,7 @@
 #include "fast_edi/integral/latent_gains.hpp"
 #include "fast_edi/latent/camera_response.hpp"
 #include "reblur/event_changes.hpp"
+#include "reblur/later_quarters.hpp"
 #include "reblur/motion_fit.hpp"
 #include "reblur/moving_blur.hpp"
 #include "reblur/residual_solver.hpp"
@@ -35,11 +36,12 @@ class Reblur {
  public:
   /// What the default's filters know of a frame.
   struct Frame {
-    ExposureInterval window;                ///< in event time
-    const float* blurry_dn = nullptr;       ///< its levels, row-major [8-bit DN]
-    const float* mean_counts = nullptr;     ///< events of each pixel, mean over 3 x 3 pixels
-    float noise_dn = 0.0F;                  ///< standard deviation [8-bit DN]
-    const std::uint16_t* counts = nullptr;  ///< OFF and ON events of each pixel, interleaved
+    ExposureInterval window;                  ///< in event time
+    const float* blurry_dn = nullptr;         ///< its levels, row-major [8-bit DN]
+    const float* mean_counts = nullptr;       ///< events of each pixel, mean over 3 x 3 pixels
+    float noise_dn = 0.0F;                    ///< standard deviation [8-bit DN]
+    const std::uint16_t* counts = nullptr;    ///< OFF and ON events of each pixel, interleaved
+    const LaterQuarters* quarters = nullptr;  ///< of the window
     /// Levels of the latent image without the noise that stays in it, row-major [DN of the image];
     /// null: as in the image.
     const float* clean_dn = nullptr;

@@ -46,20 +46,15 @@ void residuals(const float* __restrict blurry, const float* __restrict reblurred
   }
 }
 
+/// Where the frame is saturated they are 0.
 FAST_EDI_VECTOR_CLONES
-void precisions(const float* __restrict residual, std::size_t count, float noise,
-                float* __restrict precision) {
+void precisions(const float* __restrict blurry, const float* __restrict residual, std::size_t count,
+                float noise, float* __restrict precision) {
   const float variance = noise * noise;
   const float robust = 1.0F / (kRobust * kRobust * variance);
   for (std::size_t i = 0; i < count; ++i) {
-    precision[i] = 1.0F / (variance * (1.0F + robust * residual[i] * residual[i]));
-  }
-}
-
-FAST_EDI_VECTOR_CLONES
-void multiply(const float* __restrict by, std::size_t count, float* __restrict values) {
-  for (std::size_t i = 0; i < count; ++i) {
-    values[i] *= by[i];
+    const float value = 1.0F / (variance * (1.0F + robust * residual[i] * residual[i]));
+    precision[i] = blurry[i] >= kSaturated_dn ? 0.0F : value;
   }
 }
 
@@ -67,45 +62,60 @@ float total(const FloatBlock& sum) {
   return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
-/// Sum of products over a row of whole blocks.
+/// Sum of squares over a row of whole blocks.
 FAST_EDI_VECTOR_CLONES
-float dotOfRow(const float* x, const float* y, std::size_t count) {
+float squaresOfRow(const float* values, std::size_t count) {
   FloatBlock sum = {};
   for (std::size_t i = 0; i < count; i += kFloatBlock) {
-    FloatBlock a;
-    FloatBlock b;
-    std::memcpy(&a, x + i, sizeof(a));
-    std::memcpy(&b, y + i, sizeof(b));
-    sum += a * b;
-  }
-  return total(sum);
-}
-
-/// A step of a row: \p solution and \p gradient. \return sum of squares of the new gradient
-FAST_EDI_VECTOR_CLONES
-float stepRow(std::size_t count, float length, const float* direction, const float* product,
-              float* solution, float* gradient) {
-  FloatBlock sum = {};
-  for (std::size_t i = 0; i < count; i += kFloatBlock) {
-    FloatBlock way;
     FloatBlock value;
-    std::memcpy(&way, direction + i, sizeof(way));
-    std::memcpy(&value, solution + i, sizeof(value));
-    value += length * way;
-    std::memcpy(solution + i, &value, sizeof(value));
-    std::memcpy(&way, product + i, sizeof(way));
-    std::memcpy(&value, gradient + i, sizeof(value));
-    value -= length * way;
-    std::memcpy(gradient + i, &value, sizeof(value));
+    std::memcpy(&value, values + i, sizeof(value));
     sum += value * value;
   }
   return total(sum);
 }
 
+/// Weighs a row. \return sum of its weighted squares
 FAST_EDI_VECTOR_CLONES
-void scaleAndAdd(std::size_t count, float factor, const float* __restrict x, float* __restrict y) {
+float weigh(const float* weights, std::size_t count, float* values) {
+  FloatBlock sum = {};
+  for (std::size_t i = 0; i < count; i += kFloatBlock) {
+    FloatBlock weight;
+    FloatBlock value;
+    std::memcpy(&weight, weights + i, sizeof(weight));
+    std::memcpy(&value, values + i, sizeof(value));
+    weight *= value;
+    std::memcpy(values + i, &weight, sizeof(weight));
+    sum += weight * value;
+  }
+  return total(sum);
+}
+
+FAST_EDI_VECTOR_CLONES
+void addScaled(const float* __restrict x, std::size_t count, float factor, float* __restrict y) {
   for (std::size_t i = 0; i < count; ++i) {
-    y[i] = x[i] + factor * y[i];
+    y[i] += factor * x[i];
+  }
+}
+
+/// A row of each plane of the conjugate gradients.
+struct GradientRows {
+  const float* product;
+  float* direction;
+  float* gradient;
+  float* solution;
+};
+FAST_EDI_VECTOR_CLONES
+void advance(const GradientRows& rows, std::size_t count, float length, float factor) {
+  const float* __restrict product = rows.product;
+  float* __restrict direction = rows.direction;
+  float* __restrict gradient = rows.gradient;
+  float* __restrict solution = rows.solution;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float way = direction[i];
+    const float left = gradient[i] - length * product[i];
+    solution[i] += length * way;
+    gradient[i] = left;
+    direction[i] = left + factor * way;
   }
 }
 
@@ -116,147 +126,230 @@ struct Prior {
   const float* down;
 };
 
+struct Sums {
+  float energy;   ///< of the direction with the product
+  float squares;  ///< of the product
+};
+
 /// Adds what anchor and likeness of neighbours contribute to the product.
 FAST_EDI_VECTOR_CLONES
 void addPrior(const Prior& prior, const float* __restrict in, std::size_t count, std::size_t stride,
               float* __restrict out) {
   const float* __restrict anchor = prior.anchor;
   const float* __restrict across = prior.across;
+  const float* __restrict across_before = prior.across - 1;
   const float* __restrict down = prior.down;
   const float* __restrict down_above = prior.down - stride;
+  const float* __restrict before = in - 1;
   const float* __restrict above = in - stride;
   const float* __restrict below = in + stride;
   for (std::size_t i = 0; i < count; ++i) {
     const float value = in[i];
     out[i] += anchor[i] * value +
-              (across[i] * (value - in[i + 1]) + *(across + i - 1) * (value - *(in + i - 1))) +
+              (across[i] * (value - in[i + 1]) + across_before[i] * (value - before[i])) +
               (down[i] * (value - below[i]) + down_above[i] * (value - above[i]));
   }
 }
 
-/// Copies a plane of the image into one of the scene; beyond the border its nearest pixel counts.
-void extend(const float* plane, const SceneLayout& layout, std::vector<float>& scene) {
-  const auto width = static_cast<std::size_t>(layout.size().width);
-  const std::size_t stride = layout.sceneStride();
-  const std::size_t margin = layout.margin();
-  scene.resize(layout.sceneFloats());
-  for (std::size_t y = 0; y < layout.sceneRows(); ++y) {
-    const std::size_t inside = std::clamp(y, margin, margin + layout.rows() - 1) - margin;
-    const float* from = plane + inside * width;
-    float* to = scene.data() + y * stride;
-    std::fill(to, to + margin, from[0]);
-    std::copy(from, from + width, to + margin);
-    std::fill(to + margin + width, to + stride, from[width - 1]);
+FAST_EDI_VECTOR_CLONES
+Sums sumsOf(const float* direction, const float* product, std::size_t count) {
+  FloatBlock energy = {};
+  FloatBlock squares = {};
+  for (std::size_t i = 0; i < count; i += kFloatBlock) {
+    FloatBlock a;
+    FloatBlock b;
+    std::memcpy(&a, direction + i, sizeof(a));
+    std::memcpy(&b, product + i, sizeof(b));
+    energy += a * b;
+    squares += b * b;
   }
+  return {total(energy), total(squares)};
+}
+
+/// Copies a row of the image into one of the scene; beyond the border its nearest pixel counts.
+void extendRow(const float* from, const SceneLayout& layout, float* to) {
+  const auto width = static_cast<std::size_t>(layout.size().width);
+  std::fill(to, to + layout.margin(), from[0]);
+  std::copy(from, from + width, to + layout.margin());
+  std::fill(to + layout.margin() + width, to + layout.sceneStride(), from[width - 1]);
 }
 
 }  // namespace
 
-void ResidualSolver::load(const Input& input, const SceneLayout& layout) {
-  const std::size_t count = layout.sceneFloats();
+void ResidualSolver::resize(const SceneLayout& layout) {
+  for (std::vector<float>* scene :
+       {&given_, &solution_, &anchor_, &across_, &down_, &direction_, &gradient_, &product_}) {
+    scene->resize(layout.sceneFloats());
+  }
+  for (std::vector<float>* image : {&precision_, &before_, &after_}) {
+    image->resize(layout.imageFloats());
+  }
+}
+
+/// Given levels, anchors and likenesses of a row of the scene.
+void ResidualSolver::loadRow(const Input& input, const SceneLayout& layout, std::size_t row) {
+  const std::size_t margin = layout.margin();
+  const std::size_t inside = std::clamp(row, margin, margin + layout.rows() - 1) - margin;
+  const std::size_t pixel = inside * static_cast<std::size_t>(layout.size().width);
   const std::size_t stride = layout.sceneStride();
-  extend(input.mean_counts, layout, product_);
-  extend(input.latent_dn, layout, given_);
-  anchor_.resize(count);
-  across_.resize(count);
-  down_.resize(count);
-  anchors(given_.data(), product_.data(), count, input.offset_dn, anchor_.data());
-  likeness(given_.data(), given_.data() + 1, count - 1, across_.data());
-  likeness(given_.data(), given_.data() + stride, count - stride, down_.data());
-  for (std::size_t end = stride; end <= count; end += stride) {
-    across_[end - 1] = 0.0F;
+  const std::size_t first = row * stride;
+  float* given = given_.data() + first;
+  float* counts = product_.data() + first;  // scratch as yet
+  extendRow(input.latent_dn + pixel, layout, given);
+  extendRow(input.mean_counts + pixel, layout, counts);
+  std::copy_n(given, stride, solution_.data() + first);
+  anchors(given, counts, stride, input.offset_dn, anchor_.data() + first);
+  likeness(given, given + 1, stride - 1, across_.data() + first);
+  across_[first + stride - 1] = 0.0F;
+  if (row > 0) {
+    likeness(given - stride, given, stride, down_.data() + first - stride);
   }
-  for (std::vector<float>* image : {&precision_, &before_, &after_, &image_}) {
-    image->assign(layout.imageFloats(), 0.0F);
-  }
-  direction_.resize(count);
-  gradient_.resize(count);
-  product_.resize(count);
 }
 
-void ResidualSolver::measureResidual(const Input& input, MovingBlur& blur,
-                                     const std::vector<float>& scene,
-                                     std::vector<float>& residual) {
-  const SceneLayout& layout = blur.layout();
+/// Residual and precision of a row of the image. \param values of A L0; written: their product
+void ResidualSolver::weighRow(const Input& input, const SceneLayout& layout, std::size_t row,
+                              float* values) {
   const auto width = static_cast<std::size_t>(layout.size().width);
-  blur.apply(scene.data(), image_.data());
-  for (std::size_t y = 0; y < layout.rows(); ++y) {
-    residuals(input.blurry_dn + y * width, image_.data() + y * layout.stride(), width,
-              residual.data() + y * layout.stride());
-  }
+  const std::size_t stride = layout.stride();
+  const float* blurry = input.blurry_dn + row * width;
+  float* before = before_.data() + row * stride;
+  float* precision = precision_.data() + row * stride;
+  residuals(blurry, values, width, before);
+  precisions(blurry, before, width, std::max(input.noise_dn, kLeastNoise_dn), precision);
+  std::fill(before + width, before + stride, 0.0F);
+  std::fill(precision + width, precision + stride, 0.0F);
+  std::copy_n(before, stride, values);
+  weigh(precision, stride, values);
 }
 
-/// Applies the normal equations to the direction. \return its product with the result
-double ResidualSolver::applyEquations(MovingBlur& blur) {
-  const std::size_t count = blur.layout().sceneFloats();
-  const std::size_t stride = blur.layout().sceneStride();
-  blur.applyNormal(direction_.data(), precision_.data(), product_.data());
-  double energy = 0.0;
-  for (std::size_t i = 0; i < count; i += stride) {
-    if (i > 0 && i + stride < count) {
-      addPrior({anchor_.data() + i, across_.data() + i, down_.data() + i}, direction_.data() + i,
-               stride, stride, product_.data() + i);
-    }
-    energy += static_cast<double>(dotOfRow(direction_.data() + i, product_.data() + i, stride));
+/// The gradient at L0, which is the first direction. \return its sum of squares
+double ResidualSolver::start(const Input& input, MovingBlur& blur) {
+  const SceneLayout& layout = blur.layout();
+  const std::size_t stride = layout.sceneStride();
+  double squares = 0.0;
+  blur.applyNormalRows(
+      given_.data(), gradient_.data(), [&](std::size_t row) { loadRow(input, layout, row); },
+      [&](std::size_t row, float* values) { weighRow(input, layout, row, values); },
+      [&](std::size_t row) {
+        const float* gradient = gradient_.data() + row * stride;
+        std::copy_n(gradient, stride, direction_.data() + row * stride);
+        squares += static_cast<double>(squaresOfRow(gradient, stride));
+      });
+  return squares;
+}
+
+void ResidualSolver::advanceRow(const SceneLayout& layout, std::size_t row, const Step& step) {
+  const std::size_t first = row * layout.sceneStride();
+  advance({product_.data() + first, direction_.data() + first, gradient_.data() + first,
+           solution_.data() + first},
+          layout.sceneStride(), step.length, step.factor);
+}
+
+/// Completes a row of the product. \return the direction's product with it
+double ResidualSolver::addPriorOfRow(const SceneLayout& layout, std::size_t row, double* squares) {
+  const std::size_t stride = layout.sceneStride();
+  const std::size_t first = row * stride;
+  if (row > 0 && row + 1 < layout.sceneRows()) {
+    addPrior({anchor_.data() + first, across_.data() + first, down_.data() + first},
+             direction_.data() + first, stride, stride, product_.data() + first);
   }
+  const Sums sums = sumsOf(direction_.data() + first, product_.data() + first, stride);
+  *squares += static_cast<double>(sums.squares);
+  return static_cast<double>(sums.energy);
+}
+
+/// Takes a step and finds the next one. \return false: there is nothing left to do
+/// \param squares of the gradient before and after the next one
+bool ResidualSolver::next(MovingBlur& blur, double& squares, Step& step) {
+  const SceneLayout& layout = blur.layout();
+  double energy = 0.0;
+  double product_squares = 0.0;
+  const bool is_first = step.length == 0.0F;
+  blur.applyNormalRows(
+      direction_.data(), product_.data(),
+      [&](std::size_t row) {
+        if (!is_first) {
+          advanceRow(layout, row, step);
+        }
+      },
+      [&](std::size_t row, float* values) {
+        weigh(precision_.data() + row * layout.stride(), layout.stride(), values);
+      },
+      [&](std::size_t row) { energy += addPriorOfRow(layout, row, &product_squares); });
+  step = {};
+  if (!(energy > 0.0)) {
+    return false;
+  }
+  const double length = squares / energy;
+  const double left = length * length * product_squares - squares;
+  step.length = static_cast<float>(length);
+  step.factor = static_cast<float>(std::max(0.0, left) / squares);
+  squares = left;
+  return left > 0.0;
+}
+
+/// Takes a step. \return energy of the direction after it: its product with the equations' one
+double ResidualSolver::lastEnergy(MovingBlur& blur, const Step& step) {
+  const SceneLayout& layout = blur.layout();
+  const std::size_t stride = layout.sceneStride();
+  double energy = 0.0;
+  double unused = 0.0;
+  blur.applyRows(
+      direction_.data(),
+      [&](std::size_t row) {
+        advanceRow(layout, row, step);
+        if (row > 0) {
+          std::fill_n(product_.data() + (row - 1) * stride, stride, 0.0F);
+          energy += addPriorOfRow(layout, row - 1, &unused);
+        }
+      },
+      [&](std::size_t row, float* values) {
+        energy += static_cast<double>(
+            weigh(precision_.data() + row * layout.stride(), layout.stride(), values));
+      });
   return energy;
 }
 
-void ResidualSolver::iterate(MovingBlur& blur) {
-  const std::size_t count = blur.layout().sceneFloats();
-  const std::size_t stride = blur.layout().sceneStride();
-  std::copy(before_.begin(), before_.end(), image_.begin());
-  multiply(precision_.data(), image_.size(), image_.data());
-  blur.applyTransposed(image_.data(), gradient_.data());
-  direction_ = gradient_;
-  double squares = 0.0;
-  for (std::size_t i = 0; i < count; i += stride) {
-    squares += static_cast<double>(dotOfRow(gradient_.data() + i, gradient_.data() + i, stride));
-  }
-  for (int step = 0; step < kSteps; ++step) {
-    const double energy = applyEquations(blur);
-    if (energy <= 0.0) {
-      return;  // no residual
-    }
-    const auto length = static_cast<float>(squares / energy);
-    double next = 0.0;
-    for (std::size_t i = 0; i < count; i += stride) {
-      next +=
-          static_cast<double>(stepRow(stride, length, direction_.data() + i, product_.data() + i,
-                                      solution_.data() + i, gradient_.data() + i));
-    }
-    if (step + 1 < kSteps) {
-      scaleAndAdd(count, static_cast<float>(next / squares), gradient_.data(), direction_.data());
-    }
-    squares = next;
-  }
+/// Takes the last step, and measures what remains.
+void ResidualSolver::finish(const Input& input, MovingBlur& blur, float length) {
+  const SceneLayout& layout = blur.layout();
+  const auto width = static_cast<std::size_t>(layout.size().width);
+  const std::size_t stride = layout.sceneStride();
+  blur.applyRows(
+      solution_.data(),
+      [&](std::size_t row) {
+        if (length != 0.0F) {
+          addScaled(direction_.data() + row * stride, stride, length,
+                    solution_.data() + row * stride);
+        }
+      },
+      [&](std::size_t row, const float* values) {
+        float* after = after_.data() + row * layout.stride();
+        residuals(input.blurry_dn + row * width, values, width, after);
+        std::fill(after + width, after + layout.stride(), 0.0F);
+      });
 }
 
 void ResidualSolver::solve(const Input& input, MovingBlur& blur) {
-  load(input, blur.layout());
-  solution_ = given_;
-  measureResidual(input, blur, given_, before_);
-  const SceneLayout& layout = blur.layout();
-  const auto width = static_cast<std::size_t>(layout.size().width);
-  const float noise = std::max(input.noise_dn, kLeastNoise_dn);
-  for (std::size_t y = 0; y < layout.rows(); ++y) {
-    // Beyond the image's width it stays 0, and where the frame is saturated the residual is.
-    precisions(before_.data() + y * layout.stride(), width, noise,
-               precision_.data() + y * layout.stride());
-    for (std::size_t x = 0; x < width; ++x) {
-      if (input.blurry_dn[y * width + x] >= kSaturated_dn) {
-        precision_[y * layout.stride() + x] = 0.0F;
-      }
-    }
+  resize(blur.layout());
+  double squares = start(input, blur);
+  Step step;
+  bool goes_on = squares > 0.0;
+  for (int i = 1; i < kSteps && goes_on; ++i) {
+    goes_on = next(blur, squares, step);
   }
-  iterate(blur);
-  measureResidual(input, blur, solution_, after_);
+  float length = step.length;
+  if (goes_on) {
+    const double energy = lastEnergy(blur, step);
+    length = energy > 0.0 ? static_cast<float>(squares / energy) : 0.0F;
+  }
+  finish(input, blur, length);
 }
 
 std::size_t ResidualSolver::memoryBytes() const {
   std::size_t floats = 0;
   for (const std::vector<float>* plane :
-       {&given_, &solution_, &anchor_, &across_, &down_, &precision_, &before_, &after_, &image_,
+       {&given_, &solution_, &anchor_, &across_, &down_, &precision_, &before_, &after_,
         &direction_, &gradient_, &product_}) {
     floats += plane->capacity();
   }

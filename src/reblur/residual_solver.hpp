@@ -14,7 +14,10 @@
 /// - w = 0.2 / (1 + (D / (3 DN))^2) for neighbours that differ by D in L0: corrections are alike
 ///   within a surface.
 ///
-/// Four steps of conjugate gradients from d = 0: more follow the noise.
+/// Four steps of conjugate gradients from d = 0: more follow the noise. Each step is one pass over
+/// the rows: what the step before changes is changed as the rows are come to. So the new squares
+/// |g'|^2 of the gradient are needed before there is a g'; with the direction p, the step's length
+/// a and q = N p they are a^2 |q|^2 - |g|^2 (Chronopoulos and Gear, J. Comput. Appl. Math. 1989).
 #pragma once
 
 #include <cstddef>
@@ -48,11 +51,21 @@ class ResidualSolver {
   std::size_t memoryBytes() const;
 
  private:
-  void load(const Input& input, const SceneLayout& layout);
-  void measureResidual(const Input& input, MovingBlur& blur, const std::vector<float>& scene,
-                       std::vector<float>& residual);
-  double applyEquations(MovingBlur& blur);
-  void iterate(MovingBlur& blur);
+  /// A step of conjugate gradients, taken as the next pass comes to the rows.
+  struct Step {
+    float length = 0.0F;  ///< along the direction
+    float factor = 0.0F;  ///< of the old direction in the new one
+  };
+
+  void resize(const SceneLayout& layout);
+  void loadRow(const Input& input, const SceneLayout& layout, std::size_t row);
+  void weighRow(const Input& input, const SceneLayout& layout, std::size_t row, float* values);
+  double start(const Input& input, MovingBlur& blur);
+  void advanceRow(const SceneLayout& layout, std::size_t row, const Step& step);
+  double addPriorOfRow(const SceneLayout& layout, std::size_t row, double* squares);
+  bool next(MovingBlur& blur, double& squares, Step& step);
+  double lastEnergy(MovingBlur& blur, const Step& step);
+  void finish(const Input& input, MovingBlur& blur, float length);
 
   std::vector<float> given_;
   std::vector<float> solution_;
@@ -62,7 +75,6 @@ class ResidualSolver {
   std::vector<float> precision_;  ///< m
   std::vector<float> before_;
   std::vector<float> after_;
-  std::vector<float> image_;
   // Of the conjugate gradients:
   std::vector<float> direction_;
   std::vector<float> gradient_;

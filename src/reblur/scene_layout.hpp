@@ -3,7 +3,8 @@
 ///
 /// During the exposure more of the scene is seen than in the middle of it. So the scene has a
 /// margin on all sides, of whole blocks, as wide as the image moves. Both kinds of planes have rows
-/// of whole blocks; one displacement serves a block, so that all loads are contiguous.
+/// of whole blocks; one displacement serves a block in a few rows, so that all loads are
+/// contiguous.
 #pragma once
 
 #include <algorithm>
@@ -18,6 +19,8 @@ namespace fast_edi {
 
 /// Pixels of a block.
 constexpr std::size_t kFloatBlock = 8;
+/// Rows of the image that share their displacements.
+constexpr std::size_t kRowsAlike = 4;
 /// A block: one register or two. The compiler splits its operations as the processor needs it,
 /// element by element, so that results are the same everywhere.
 using FloatBlock = float __attribute__((vector_size(kFloatBlock * sizeof(float))));
@@ -66,6 +69,11 @@ class SceneLayout {
   static float centreOf(std::size_t block) {
     constexpr float kMiddle = 0.5F * static_cast<float>(kFloatBlock - 1);
     return static_cast<float>(block * kFloatBlock) + kMiddle;
+  }
+  /// Middle of the rows alike that a row belongs to.
+  static float centreOfRows(std::size_t row) {
+    constexpr float kMiddle = 0.5F * static_cast<float>(kRowsAlike - 1);
+    return static_cast<float>(row / kRowsAlike * kRowsAlike) + kMiddle;
   }
   /// Displacements beyond the margin are cut off.
   Tap tap(std::size_t block, std::size_t y, const Displacement& u) const {

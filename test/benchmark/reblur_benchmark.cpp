@@ -52,7 +52,7 @@ std::shared_ptr<Scene> sceneOf(const Case& settings) {
   return kept;
 }
 
-/// What reblurring takes in.
+/// What reblurring takes in. Events are counted before, as they are while they come.
 class Stage {
  public:
   explicit Stage(const Case& settings) : scene_(sceneOf(settings)), lists_(kSize, {}) {
@@ -67,11 +67,17 @@ class Stage {
     DoubleIntegral(kSize, model_.thresholds, Weighting::kTime, model_.level)
         .integrate(lists_, window, window.at(ExposureInstant::kMid), gain.data());
     counts_.count(lists_, window);
+    quarters_.count(lists_, window);
     image_.resize(kSize.pixelCount());
     latent_.write({scene_->texture.frame.data(), kSize, kSize.width, PixelFormat::kMono8},
                   gain.data(), {counts_.data(), model_.thresholds}, response_, view(image_));
-    frame_ = {window, latent_.blurryLevels().data(), latent_.meanCounts(), latent_.frameNoise(),
-              counts_.data()};
+    frame_ = {window,
+              latent_.blurryLevels().data(),
+              latent_.meanCounts(),
+              latent_.frameNoise(),
+              counts_.data(),
+              &quarters_,
+              latent_.cleanLevels()};
   }
 
   void play() {
@@ -103,6 +109,7 @@ class Stage {
   std::shared_ptr<Scene> scene_;
   PixelEventLists lists_;
   EventCounts counts_{kSize};
+  LaterQuarters quarters_{kSize};
   LatentGains::Model model_;
   CameraResponse response_ = CameraResponse::linear();
   LatentImage latent_{FilterParameters()};

@@ -37,7 +37,7 @@ void learnFromFrames(ParameterRefinement& refinement, DeblurCounters& counters) 
   for (const SimulatedFrame& frame : sequence.frames) {
     ASSERT_TRUE(integral.prepare(events, refinement.inForce(), true));
     const std::int64_t mid_ns = frame.exposure.at(ExposureInstant::kMid);
-    integral.integrate(*events.lists(), frame.exposure, mid_ns, false);
+    integral.integrate(*events.lists(), frame.exposure, mid_ns, WindowIntegral::Counting::kNone);
     if (!refinement.wantsFrame()) {
       refinement.skipFrame();
       continue;

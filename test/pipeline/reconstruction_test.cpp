@@ -31,7 +31,8 @@ class ReconstructionTest : public ::testing::Test {
     integral.adopt(parameters);
     EXPECT_TRUE(integral.prepare(events, parameters, true));
     const std::int64_t reference_ns = kWindow.at(parameters.reference);
-    integral.integrate(*events.lists(), kWindow, reference_ns, parameters.filter.enabled);
+    integral.integrate(*events.lists(), kWindow, reference_ns,
+                       WindowIntegral::countingFor(parameters));
     OutputFrame output;
     output.input = testing::makeFrame(20 * kMs, kSize, testing::makeGreyImage(kSize, 3));
     output.exposure = kWindow;

@@ -14,6 +14,8 @@ constexpr std::int64_t kMs = kNanosecondsPerMillisecond;
 constexpr SensorSize kSize{8, 6};
 constexpr ExposureInterval kWindow{10 * kMs, 30 * kMs};
 constexpr std::int64_t kMid = 20 * kMs;
+constexpr auto kNotCounted = WindowIntegral::Counting::kNone;
+constexpr auto kCounted = WindowIntegral::Counting::kWindow;
 
 class WindowIntegralTest : public ::testing::Test {
  protected:
@@ -54,13 +56,13 @@ TEST_F(WindowIntegralTest, TakesNoMemoryBeforeItMay) {
 TEST_F(WindowIntegralTest, GivesTheGainsOfTheReferencePredictedOrNot) {
   take(kSize, 1);
   ASSERT_TRUE(integral.prepare(events, parameters, true));
-  EXPECT_EQ(integral.integrate(*events.lists(), kWindow, kMid, false).kind,
+  EXPECT_EQ(integral.integrate(*events.lists(), kWindow, kMid, kNotCounted).kind,
             IntegrationKind::kNotPredicted);
   expectReference(kSize);
   const std::vector<float> gains = integral.gains();
   integral.predictWindow(kWindow, kMid);
-  integral.accumulate(*events.lists(), true);
-  const IntegrationReport report = integral.integrate(*events.lists(), kWindow, kMid, true);
+  integral.accumulate(*events.lists(), kCounted);
+  const IntegrationReport report = integral.integrate(*events.lists(), kWindow, kMid, kCounted);
   EXPECT_EQ(report.kind, IntegrationKind::kPredicted);
   EXPECT_EQ(integral.gains(), gains);
   std::uint64_t counted = 0;
@@ -74,21 +76,21 @@ TEST_F(WindowIntegralTest, APredictionNearTheOneBeforeKeepsTheRunningSums) {
   take(kSize, 1);
   ASSERT_TRUE(integral.prepare(events, parameters, true));
   integral.predictWindow(kWindow, kMid);
-  integral.accumulate(*events.lists(), false);
+  integral.accumulate(*events.lists(), kNotCounted);
   integral.predictWindow({kWindow.start_ns + 1000, kWindow.end_ns + 1000}, kMid + 1000);
-  EXPECT_EQ(integral.integrate(*events.lists(), kWindow, kMid, false).kind,
+  EXPECT_EQ(integral.integrate(*events.lists(), kWindow, kMid, kNotCounted).kind,
             IntegrationKind::kPredicted);
 }
 
 TEST_F(WindowIntegralTest, FollowsTheListsThroughAChangeOfSize) {
   take(kSize, 1);
   ASSERT_TRUE(integral.prepare(events, parameters, true));
-  integral.integrate(*events.lists(), kWindow, kMid, true);
+  integral.integrate(*events.lists(), kWindow, kMid, kCounted);
   const SensorSize larger{12, 10};
   take(larger, 2);
   EXPECT_FALSE(integral.prepare(events, parameters, false));
   ASSERT_TRUE(integral.prepare(events, parameters, true));
-  integral.integrate(*events.lists(), kWindow, kMid, true);
+  integral.integrate(*events.lists(), kWindow, kMid, kCounted);
   expectReference(larger);
 }
 
@@ -96,11 +98,11 @@ TEST_F(WindowIntegralTest, StartsAnewAfterTheListsWereEmptied) {
   take(kSize, 1);
   ASSERT_TRUE(integral.prepare(events, parameters, true));
   integral.predictWindow(kWindow, kMid);
-  integral.accumulate(*events.lists(), true);
+  integral.accumulate(*events.lists(), kCounted);
   events.restart();
   take(kSize, 3);
   ASSERT_TRUE(integral.prepare(events, parameters, false));
-  integral.integrate(*events.lists(), kWindow, kMid, true);
+  integral.integrate(*events.lists(), kWindow, kMid, kCounted);
   expectReference(kSize);
 }
 
@@ -108,15 +110,15 @@ TEST_F(WindowIntegralTest, AdoptsThresholdsAndWeighting) {
   take(kSize, 1);
   ASSERT_TRUE(integral.prepare(events, parameters, true));
   integral.predictWindow(kWindow, kMid);
-  integral.accumulate(*events.lists(), true);
+  integral.accumulate(*events.lists(), kCounted);
   parameters.thresholds = {0.2, 0.4};
   integral.adopt(parameters);
-  integral.integrate(*events.lists(), kWindow, kMid, true);
+  integral.integrate(*events.lists(), kWindow, kMid, kCounted);
   expectReference(kSize);
   parameters.weighting = Weighting::kCounter;
   integral.adopt(parameters);
   ASSERT_TRUE(integral.prepare(events, parameters, true));
-  integral.integrate(*events.lists(), kWindow, kMid, true);
+  integral.integrate(*events.lists(), kWindow, kMid, kCounted);
   expectReference(kSize);
 }
 

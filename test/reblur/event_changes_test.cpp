@@ -27,7 +27,9 @@ TEST(EventChangesTest, AreTheLogRatiosOfTheGains) {
   EventChanges changes;
   EventCounts counts(kSize);
   counts.count(lists, kWindow);
-  changes.measure(lists, kWindow, counts.data(), model);
+  LaterQuarters quarters(kSize);
+  quarters.count(lists, kWindow);
+  changes.measure(lists, kWindow, counts.data(), quarters, model);
 
   LatentGains gains;
   const std::vector<float> ones(kSize.pixelCount(), 1.0F);
@@ -54,7 +56,9 @@ TEST(EventChangesTest, OfManyEventsBegunStepsAreLeftOut) {
   EventCounts counts(kSize);
   counts.count(lists, kWindow);
   EventChanges changes;
-  changes.measure(lists, kWindow, counts.data(), model);
+  LaterQuarters quarters(kSize);
+  quarters.count(lists, kWindow);
+  changes.measure(lists, kWindow, counts.data(), quarters, model);
   for (std::size_t k = 0; k < EventChanges::kInstants; ++k) {
     const std::int64_t middle_ns = 20 * kMs;
     const auto t_ns =

@@ -65,7 +65,9 @@ class MotionFitTest : public ::testing::Test {
       }
     }
     EventChanges changes;
-    changes.measure(lists, frame.exposure, counts.data(),
+    LaterQuarters quarters(kPlaneSize);
+    quarters.count(lists, frame.exposure);
+    changes.measure(lists, frame.exposure, counts.data(), quarters,
                     {settings.sensor.thresholds, {4 * kNanosecondsPerMillisecond, 0.85}});
     fitted_ = MotionFit(kPlaneSize)
                   .fit(log_image.data(), changes, mean_counts.data(),

@@ -1,6 +1,8 @@
 #include "reblur/moving_blur.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -84,7 +86,33 @@ TEST(MovingBlurTest, TheNormalOperatorIsAWeightsAndATransposed) {
   std::vector<float> expected(layout.sceneFloats());
   blur.applyTransposed(image.data(), expected.data());
   std::vector<float> product(layout.sceneFloats());
-  blur.applyNormal(scene.data(), weights.data(), product.data());
+  std::size_t prepared = 0;
+  std::size_t changed = 0;
+  std::size_t finished = 0;
+  std::vector<float> known(layout.sceneFloats(), std::numeric_limits<float>::quiet_NaN());
+  blur.applyNormalRows(
+      known.data(), product.data(),
+      [&](std::size_t row) {
+        EXPECT_EQ(row, prepared++);
+        const std::size_t first = row * layout.sceneStride();
+        std::copy_n(scene.data() + first, layout.sceneStride(), known.data() + first);
+      },
+      [&](std::size_t row, float* values) {
+        EXPECT_EQ(row, changed++);
+        for (std::size_t x = 0; x < layout.stride(); ++x) {
+          values[x] *= weights[row * layout.stride() + x];
+        }
+      },
+      [&](std::size_t row) {
+        EXPECT_EQ(row, finished++);
+        const std::size_t first = row * layout.sceneStride();
+        for (std::size_t i = first; i < first + layout.sceneStride(); ++i) {
+          ASSERT_EQ(product[i], expected[i]) << row;  // it will not change any more
+        }
+      });
+  EXPECT_EQ(prepared, layout.sceneRows());
+  EXPECT_EQ(changed, layout.rows());
+  EXPECT_EQ(finished, layout.sceneRows());
   EXPECT_EQ(product, expected);
 }
 

@@ -110,7 +110,9 @@ class TrustMapTest : public ::testing::Test {
     lists.append(testing::wireView(testing::toWire(events)));
     EventCounts counts(kSize);
     counts.count(lists, kWindow);
-    changes_.measure(lists, kWindow, counts.data(), {{kContrast, kContrast}, {0, 0.0}});
+    LaterQuarters quarters(kSize);
+    quarters.count(lists, kWindow);
+    changes_.measure(lists, kWindow, counts.data(), quarters, {{kContrast, kContrast}, {0, 0.0}});
 
     std::mt19937 random(4);
     std::normal_distribution<double> noise(0.0, static_cast<double>(kNoise_dn));
