@@ -10,12 +10,12 @@
 namespace fast_edi {
 namespace {
 
-constexpr std::size_t kMostPixels = 1200;
-constexpr std::size_t kFewestPixels = 60;
-constexpr float kLeastCount = 1.5F;  ///< of a chosen pixel
 /// At most, of the finest level first.
-constexpr std::array<int, 3> kMostSteps = {3, 4, 10};
-constexpr double kConverged_px = 0.05;
+constexpr std::array<std::size_t, 3> kMostPixels = {1200, 700, 500};
+constexpr std::size_t kFewestPixels = 60;
+constexpr float kLeastCount = 1.5F;                   ///< of a chosen pixel
+constexpr std::array<int, 3> kMostSteps = {2, 3, 6};  ///< the same
+constexpr double kConverged_px = 0.1;
 /// Of the robust weights, in contrast thresholds; the finest level first.
 constexpr std::array<float, 3> kSpread = {6.0F, 3.0F, 2.0F};
 /// Where thresholds are smaller than this, noise of the image decides.
@@ -66,27 +66,27 @@ void binomial(const float* __restrict a, const float* __restrict b, const float*
   }
 }
 
-/// \param rows scratch
-void smooth(std::vector<float>& plane, SensorSize size, std::vector<float>& rows) {
+/// \param row scratch
+void smooth(const float* plane, SensorSize size, std::vector<float>& row,
+            std::vector<float>& smoothed) {
   const auto width = static_cast<std::size_t>(size.width);
   const auto height = static_cast<std::size_t>(size.height);
-  rows.resize(plane.size());
+  row.resize(width);
+  smoothed.resize(size.pixelCount());
   for (std::size_t y = 0; y < height; ++y) {
-    const float* above = plane.data() + (y > 0 ? y - 1 : 0) * width;
-    const float* below = plane.data() + std::min(y + 1, height - 1) * width;
-    binomial(above, plane.data() + y * width, below, width, rows.data() + y * width);
-  }
-  for (std::size_t y = 0; y < height; ++y) {
-    const float* row = rows.data() + y * width;
-    float* out = plane.data() + y * width;
-    binomial(row, row + 1, row + 2, width - 2, out + 1);
+    const float* above = plane + (y > 0 ? y - 1 : 0) * width;
+    const float* below = plane + std::min(y + 1, height - 1) * width;
+    binomial(above, plane + y * width, below, width, row.data());
+    float* out = smoothed.data() + y * width;
+    binomial(row.data(), row.data() + 1, row.data() + 2, width - 2, out + 1);
     out[0] = kQuarter * (3.0F * row[0] + row[1]);
     out[width - 1] = kQuarter * (3.0F * row[width - 1] + row[width - 2]);
   }
 }
 
 /// Pixels with events, inside the border; of many, evenly spaced ones.
-void choosePixels(SensorSize size, const float* counts, std::vector<std::uint32_t>& pixel) {
+void choosePixels(SensorSize size, const float* counts, std::size_t most,
+                  std::vector<std::uint32_t>& pixel) {
   const auto width = static_cast<std::size_t>(size.width);
   const auto height = static_cast<std::size_t>(size.height);
   pixel.resize(size.pixelCount());
@@ -97,7 +97,7 @@ void choosePixels(SensorSize size, const float* counts, std::vector<std::uint32_
       count += counts[i] >= kLeastCount ? 1 : 0;
     }
   }
-  const std::size_t kept = std::min(count, kMostPixels);
+  const std::size_t kept = std::min(count, most);
   for (std::size_t i = 0; i < kept; ++i) {
     pixel[i] = pixel[i * count / kept];
   }
@@ -175,8 +175,8 @@ Sample sampleAt(const float* plane, std::ptrdiff_t width, float x, float y) {
 struct SamplePlanes {
   const float* x;  ///< relative positions
   const float* y;
-  float* gradient_x;
-  float* gradient_y;
+  const float* gradient_x;
+  const float* gradient_y;
   float* zoom;
   float* turn;
   float* tilt_x;
@@ -186,23 +186,30 @@ struct SamplePlanes {
 };
 FAST_EDI_VECTOR_CLONES
 void fillSlopes(const SamplePlanes& planes, std::size_t count, float precision) {
-  const float* __restrict x = planes.x;
-  const float* __restrict y = planes.y;
-  const float* __restrict gradient_x = planes.gradient_x;
-  const float* __restrict gradient_y = planes.gradient_y;
-  const float* __restrict residual = planes.residual;
-  float* __restrict zoom = planes.zoom;
-  float* __restrict turn = planes.turn;
-  float* __restrict tilt_x = planes.tilt_x;
-  float* __restrict tilt_y = planes.tilt_y;
-  float* __restrict weight = planes.weight;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float root = 1.0F / (1.0F + residual[i] * residual[i] * precision);
-    weight[i] *= root * root;
-    zoom[i] = gradient_x[i] * x[i] + gradient_y[i] * y[i];
-    turn[i] = gradient_y[i] * x[i] - gradient_x[i] * y[i];
-    tilt_x[i] = zoom[i] * x[i];
-    tilt_y[i] = zoom[i] * y[i];
+  for (std::size_t i = 0; i < count; i += kFloatBlock) {
+    FloatBlock x;
+    FloatBlock y;
+    FloatBlock gradient_x;
+    FloatBlock gradient_y;
+    FloatBlock residual;
+    FloatBlock weight;
+    std::memcpy(&x, planes.x + i, sizeof(x));
+    std::memcpy(&y, planes.y + i, sizeof(y));
+    std::memcpy(&gradient_x, planes.gradient_x + i, sizeof(gradient_x));
+    std::memcpy(&gradient_y, planes.gradient_y + i, sizeof(gradient_y));
+    std::memcpy(&residual, planes.residual + i, sizeof(residual));
+    std::memcpy(&weight, planes.weight + i, sizeof(weight));
+    const FloatBlock root = 1.0F / (1.0F + residual * residual * precision);
+    const FloatBlock zoom = gradient_x * x + gradient_y * y;
+    const FloatBlock turn = gradient_y * x - gradient_x * y;
+    x *= zoom;
+    y *= zoom;
+    weight *= root * root;
+    std::memcpy(planes.weight + i, &weight, sizeof(weight));
+    std::memcpy(planes.zoom + i, &zoom, sizeof(zoom));
+    std::memcpy(planes.turn + i, &turn, sizeof(turn));
+    std::memcpy(planes.tilt_x + i, &x, sizeof(x));
+    std::memcpy(planes.tilt_y + i, &y, sizeof(y));
   }
 }
 
@@ -254,9 +261,7 @@ MotionFit::MotionFit(SensorSize size) : size_(size) {
 
 void MotionFit::load(const float* log_image, const EventChanges& changes,
                      const float* mean_counts) {
-  Level& finest = levels_.front();
-  finest.log_image.assign(log_image, log_image + size_.pixelCount());
-  smooth(finest.log_image, size_, rows_);
+  smooth(log_image, size_, row_, levels_.front().log_image);
   for (std::size_t i = 1; i < kLevels; ++i) {
     const Level& finer = levels_[i - 1];
     Level& level = levels_[i];
@@ -411,7 +416,8 @@ FittedMotion MotionFit::fit(const float* log_image, const EventChanges& changes,
   };
   for (std::size_t i = kLevels; i-- > 0;) {
     const Level& level = levels_[i];
-    choosePixels(level.size, i == 0 ? mean_counts : level.count.data(), chosen_.pixel);
+    choosePixels(level.size, i == 0 ? mean_counts : level.count.data(), kMostPixels[i],
+                 chosen_.pixel);
     if (chosen_.size() < kFewestPixels) {
       continue;
     }
@@ -432,7 +438,7 @@ FittedMotion MotionFit::fit(const float* log_image, const EventChanges& changes,
 
 std::size_t MotionFit::memoryBytes() const {
   std::size_t floats =
-      rows_.capacity() + relative_x_.capacity() + relative_y_.capacity() + moved_x_.capacity() +
+      row_.capacity() + relative_x_.capacity() + relative_y_.capacity() + moved_x_.capacity() +
       moved_y_.capacity() + chosen_.x.capacity() + chosen_.y.capacity() + chosen_.value.capacity() +
       capacityOf(chosen_.change.data(), kInstants) + capacityOf(samples_.data(), kPlanes);
   for (const Level& level : levels_) {

@@ -12,16 +12,16 @@
 /// where it leaves less than 0.97 of the residuals' variance and is at least 0.75: noise of the
 /// image makes it small, too, but explains little.
 ///
-/// Gauss-Newton over some 1,200 pixels with events at three instants, coarse to fine on images of a
-/// quarter, half and full resolution. Residuals r count with weight 1 / (1 + (r / spread)^2)^2.
-/// Levels between two thresholds have moved further than their events say; S is raised by up to a
-/// quarter where a pixel has few events, as GainFilter does it with gains. Without this all motions
-/// come out a tenth too small.
+/// Gauss-Newton over pixels with events at three instants, coarse to fine: some 500, 700 and 1,200
+/// of them on images of a quarter, half and full resolution. Residuals r count with weight 1 / (1 +
+/// (r / spread)^2)^2. Levels between two thresholds have moved further than their events say; S is
+/// raised by up to a quarter where a pixel has few events, as GainFilter does it with gains.
+/// Without this all motions come out a tenth too small.
 ///
 /// Deviation. From the normal equations at the end, given the share of events; neighbouring pixels
 /// are not independent, and their number counts as a quarter.
 ///
-/// Complexity. O(pixels) for the three levels, then O(1,200 * instants * steps).
+/// Complexity. O(pixels) for the three levels, then O(instants * steps) for each of those pixels.
 #pragma once
 
 #include <array>
@@ -95,7 +95,7 @@ class MotionFit {
 
   SensorSize size_;
   std::array<Level, kLevels> levels_;  ///< the finest first
-  std::vector<float> rows_;            ///< scratch
+  std::vector<float> row_;             ///< scratch
   Chosen chosen_;
   std::vector<float> relative_x_;  ///< of the chosen pixels, in the units of ImageMotion
   std::vector<float> relative_y_;

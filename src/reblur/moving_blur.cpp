@@ -10,66 +10,93 @@ namespace {
 
 using Tap = SceneLayout::Tap;
 
-/// Taps of rows alike at one instant.
+using MaskBlock = std::int32_t __attribute__((vector_size(kFloatBlock * sizeof(std::int32_t))));
+
+/// Taps of a group at one instant.
 FAST_EDI_VECTOR_CLONES
 void fillTaps(const ImageMotion& motion, const ImageMotion::Parts& c, const SceneLayout& layout,
-              std::size_t row, Tap* taps) {
-  const float y = SceneLayout::centreOfRows(row);
+              std::size_t group, Tap* taps) {
+  const float y = SceneLayout::centreOfGroup(group);
   for (std::size_t block = 0; block < layout.blocks(); ++block) {
-    taps[block] = layout.tap(block, row, motion.displace(c, SceneLayout::centreOf(block), y));
+    taps[block] =
+        layout.tap(block, group * kRowsAlike, motion.displace(c, SceneLayout::centreOf(block), y));
   }
 }
 
-/// One row of the image: the mean over the instants of the scene at their displacements.
+/// Eight pixels, each between one and the next.
+inline void between(const float* from, float x, FloatBlock& out) {
+  FloatBlock next;
+  std::memcpy(&out, from, sizeof(out));
+  std::memcpy(&next, from + 1, sizeof(next));
+  out += x * (next - out);
+}
+
+/// Rows of the image: the mean over the instants of the scene at their displacements.
 FAST_EDI_VECTOR_CLONES
-void gatherRow(const float* scene, std::size_t scene_stride, const Tap* taps, std::size_t blocks,
-               std::size_t instants, float* out) {
+void gatherRows(const float* scene, std::size_t scene_stride, const Tap* taps, std::size_t blocks,
+                std::size_t instants, float* out) {
+  static_assert(kRowsAlike == 4, "the sums are written out: of an array they would go to memory");
   const float share = 1.0F / static_cast<float>(instants);
-  for (std::size_t block = 0; block < blocks; ++block) {
-    FloatBlock sum = {};
+  const std::size_t stride = blocks * kFloatBlock;
+  for (std::size_t block = 0; block < blocks; ++block, out += kFloatBlock) {
+    FloatBlock first = {};
+    FloatBlock second = {};
+    FloatBlock third = {};
+    FloatBlock fourth = {};
     const Tap* tap = taps + block;
     for (std::size_t k = 0; k < instants; ++k, tap += blocks) {
-      const float* upper = scene + tap->offset;
-      const float* lower = upper + scene_stride;
-      FloatBlock a;
-      FloatBlock b;
-      FloatBlock c;
-      FloatBlock d;
-      std::memcpy(&a, upper, sizeof(a));
-      std::memcpy(&b, upper + 1, sizeof(b));
-      std::memcpy(&c, lower, sizeof(c));
-      std::memcpy(&d, lower + 1, sizeof(d));
-      const FloatBlock top = a + tap->x * (b - a);
-      const FloatBlock bottom = c + tap->x * (d - c);
-      sum += top + tap->y * (bottom - top);
+      const float* from = scene + tap->offset;
+      FloatBlock above;
+      FloatBlock below;
+      between(from, tap->x, above);
+      between(from + scene_stride, tap->x, below);
+      first += above + tap->y * (below - above);
+      between(from + 2 * scene_stride, tap->x, above);
+      second += below + tap->y * (above - below);
+      between(from + 3 * scene_stride, tap->x, below);
+      third += above + tap->y * (below - above);
+      between(from + 4 * scene_stride, tap->x, above);
+      fourth += below + tap->y * (above - below);
     }
-    sum *= share;
-    std::memcpy(out + block * kFloatBlock, &sum, sizeof(sum));
+    first *= share;
+    second *= share;
+    third *= share;
+    fourth *= share;
+    std::memcpy(out, &first, sizeof(first));
+    std::memcpy(out + stride, &second, sizeof(second));
+    std::memcpy(out + 2 * stride, &third, sizeof(third));
+    std::memcpy(out + 3 * stride, &fourth, sizeof(fourth));
   }
 }
 
-/// What a block adds to the eight pixels from its tap on, in the row of the tap and in that below.
-/// \param shifted \p in by one pixel within each block, 0 in front
+/// What blocks add to the eight pixels from their tap on, in the rows of the tap and in that below.
+/// \param in rows of whole blocks; the value in front of them is not used
 FAST_EDI_VECTOR_CLONES
-void scatterBlocks(const float* __restrict in, const float* __restrict shifted, const Tap* taps,
-                   std::size_t blocks, std::size_t scene_stride, float* __restrict scene) {
+void scatterBlocks(const float* __restrict in, const Tap* taps, std::size_t blocks,
+                   std::size_t scene_stride, float* __restrict scene) {
+  const MaskBlock behind_first = {0, -1, -1, -1, -1, -1, -1, -1};
   for (std::size_t block = 0; block < blocks; ++block) {
-    float* upper = scene + taps[block].offset;
-    float* lower = upper + scene_stride;
-    FloatBlock value;
-    FloatBlock before;
-    FloatBlock sum;
-    std::memcpy(&value, in + block * kFloatBlock, sizeof(value));
-    std::memcpy(&before, shifted + block * kFloatBlock, sizeof(before));
-    value += taps[block].x * (before - value);
-    before = taps[block].y * value;
-    value -= before;
-    std::memcpy(&sum, upper, sizeof(sum));
-    sum += value;
-    std::memcpy(upper, &sum, sizeof(sum));
-    std::memcpy(&sum, lower, sizeof(sum));
-    sum += before;
-    std::memcpy(lower, &sum, sizeof(sum));
+    float* to = scene + taps[block].offset;
+    FloatBlock below = {};
+    for (std::size_t i = 0; i <= kRowsAlike; ++i, to += scene_stride) {
+      FloatBlock sum;
+      std::memcpy(&sum, to, sizeof(sum));
+      sum += below;
+      if (i < kRowsAlike) {
+        const float* from = in + (i * blocks + block) * kFloatBlock;
+        FloatBlock value;
+        MaskBlock bits;
+        FloatBlock before;
+        std::memcpy(&value, from, sizeof(value));
+        std::memcpy(&bits, from - 1, sizeof(bits));
+        bits &= behind_first;
+        std::memcpy(&before, &bits, sizeof(before));
+        value += taps[block].x * (before - value);
+        below = taps[block].y * value;
+        sum += value - below;
+      }
+      std::memcpy(to, &sum, sizeof(sum));
+    }
   }
 }
 
@@ -78,11 +105,15 @@ void scatterBlocks(const float* __restrict in, const float* __restrict shifted, 
 void scatterLast(const float* in, const Tap* taps, std::size_t blocks, std::size_t scene_stride,
                  float* scene) {
   for (std::size_t block = 0; block < blocks; ++block) {
-    float* upper = scene + taps[block].offset + kFloatBlock;
-    const float value = taps[block].x * in[block * kFloatBlock + kFloatBlock - 1];
-    const float below = taps[block].y * value;
-    *upper += value - below;
-    upper[scene_stride] += below;
+    float* to = scene + taps[block].offset + kFloatBlock;
+    float below = 0.0F;
+    for (std::size_t i = 0; i < kRowsAlike; ++i, to += scene_stride) {
+      const float value = taps[block].x * in[(i * blocks + block + 1) * kFloatBlock - 1];
+      const float next = taps[block].y * value;
+      *to += below + (value - next);
+      below = next;
+    }
+    *to += below;
   }
 }
 
@@ -112,13 +143,12 @@ void MovingBlur::set(const ImageMotion& motion, const SceneLayout& layout, std::
   constexpr double kHalf = 0.5;
   layout_ = layout;
   instants_ = instants;
-  const std::size_t groups = (layout.rows() + kRowsAlike - 1) / kRowsAlike;
-  taps_.resize(groups * instants * layout.blocks());
+  taps_.resize(layout.groups() * instants * layout.blocks());
   Tap* taps = taps_.data();
-  for (std::size_t row = 0; row < layout.rows(); row += kRowsAlike) {
+  for (std::size_t group = 0; group < layout.groups(); ++group) {
     for (std::size_t k = 0; k < instants; ++k, taps += layout.blocks()) {
       const float tau = static_cast<float>(2 * k + 1) / static_cast<float>(instants) - 1.0F;
-      fillTaps(motion, motion.at(tau), layout, row, taps);
+      fillTaps(motion, motion.at(tau), layout, group, taps);
     }
   }
   double lost_x = 0.0;
@@ -131,8 +161,7 @@ void MovingBlur::set(const ImageMotion& motion, const SceneLayout& layout, std::
   lost_y_ = static_cast<float>(kHalf * lost_y / static_cast<double>(taps_.size()));
   sharpened_.resize(layout.sceneFloats());
   sum_.resize(layout.sceneFloats());
-  row_.resize(layout.stride());
-  shifted_.assign(layout.stride(), 0.0F);
+  rows_.assign(kFloatBlock + kRowsAlike * layout.stride(), 0.0F);
 }
 
 /// A row of S, which is symmetric but for the first and last row: no tap reaches them.
@@ -162,24 +191,20 @@ void MovingBlur::clearSum(std::size_t row) {
   std::fill_n(sum_.data() + row * layout_.sceneStride(), layout_.sceneStride(), 0.0F);
 }
 
-/// To row_.
-void MovingBlur::gather(std::size_t row) {
-  gatherRow(sharpened_.data() + fromFirst(row), layout_.sceneStride(), tapsOf(row),
-            layout_.blocks(), instants_, row_.data());
+/// To rows_.
+void MovingBlur::gather(std::size_t group) {
+  gatherRows(sharpened_.data(), layout_.sceneStride(), tapsOf(group), layout_.blocks(), instants_,
+             rows_.data() + kFloatBlock);
 }
 
-/// Adds row_ to sum_.
-void MovingBlur::scatter(std::size_t row) {
-  scale(row_.size(), 1.0F / static_cast<float>(instants_), row_.data());
-  std::copy(row_.begin(), row_.end() - 1, shifted_.begin() + 1);
-  for (std::size_t i = 0; i < shifted_.size(); i += kFloatBlock) {
-    shifted_[i] = 0.0F;
-  }
-  float* sum = sum_.data() + fromFirst(row);
-  const Tap* taps = tapsOf(row);
+/// Adds rows_ to sum_.
+void MovingBlur::scatter(std::size_t group) {
+  scale(rows_.size(), 1.0F / static_cast<float>(instants_), rows_.data());
+  const float* rows = rows_.data() + kFloatBlock;
+  const Tap* taps = tapsOf(group);
   for (std::size_t k = 0; k < instants_; ++k, taps += layout_.blocks()) {
-    scatterBlocks(row_.data(), shifted_.data(), taps, layout_.blocks(), layout_.sceneStride(), sum);
-    scatterLast(row_.data(), taps, layout_.blocks(), layout_.sceneStride(), sum);
+    scatterBlocks(rows, taps, layout_.blocks(), layout_.sceneStride(), sum_.data());
+    scatterLast(rows, taps, layout_.blocks(), layout_.sceneStride(), sum_.data());
   }
 }
 
@@ -194,9 +219,11 @@ void MovingBlur::apply(const float* scene, float* image) {
 
 void MovingBlur::applyTransposed(const float* image, float* scene) {
   std::fill(sum_.begin(), sum_.end(), 0.0F);
-  for (std::size_t row = 0; row < layout_.rows(); ++row) {
-    std::copy_n(image + row * layout_.stride(), layout_.stride(), row_.data());
-    scatter(row);
+  for (std::size_t group = 0; group < layout_.groups(); ++group) {
+    forRows(group, [&](std::size_t row, float* values) {
+      std::copy_n(image + row * layout_.stride(), layout_.stride(), values);
+    });
+    scatter(group);
   }
   for (std::size_t row = 0; row < layout_.sceneRows(); ++row) {
     sharpenRow(sum_.data(), row, scene);
@@ -205,8 +232,7 @@ void MovingBlur::applyTransposed(const float* image, float* scene) {
 
 std::size_t MovingBlur::memoryBytes() const {
   return taps_.capacity() * sizeof(Tap) +
-         (sharpened_.capacity() + sum_.capacity() + row_.capacity() + shifted_.capacity()) *
-             sizeof(float);
+         (sharpened_.capacity() + sum_.capacity() + rows_.capacity()) * sizeof(float);
 }
 
 }  // namespace fast_edi

@@ -44,13 +44,13 @@ class MovingBlur {
   /// \param take take(row, values): each row of A L, layout().stride() values, in order
   template <typename Prepare, typename Take>
   void applyRows(const float* scene, Prepare prepare, Take take) {
-    std::size_t row = 0;
+    std::size_t group = 0;
     for (std::size_t prepared = 0; prepared < layout_.sceneRows(); ++prepared) {
       prepare(prepared);
       const std::size_t ready = sharpenBehind(scene, prepared);
-      for (; row < layout_.rows() && row + reached() < ready; ++row) {
-        gather(row);
-        take(row, row_.data());
+      for (; group < layout_.groups() && lastReached(group) < ready; ++group) {
+        gather(group);
+        forRows(group, take);
       }
     }
   }
@@ -65,17 +65,20 @@ class MovingBlur {
   template <typename Prepare, typename Change, typename Finish>
   void applyNormalRows(const float* scene, float* out, Prepare prepare, Change change,
                        Finish finish) {
+    std::size_t group = 0;
     std::size_t row = 0;
     for (std::size_t prepared = 0; prepared < layout_.sceneRows(); ++prepared) {
       prepare(prepared);
       clearSum(prepared);
       const std::size_t ready = sharpenBehind(scene, prepared);
-      for (; row < layout_.rows() && row + reached() < ready; ++row) {
-        gather(row);
-        change(row, row_.data());
-        scatter(row);
-        sharpenRow(sum_.data(), row, out);  // rows to come add nothing to it nor to the next one
-        finish(row);
+      for (; group < layout_.groups() && lastReached(group) < ready; ++group) {
+        gather(group);
+        forRows(group, change);
+        scatter(group);
+        for (const std::size_t next = (group + 1) * kRowsAlike; row < next; ++row) {
+          sharpenRow(sum_.data(), row, out);  // groups to come add nothing to it nor below it
+          finish(row);
+        }
       }
     }
     for (; row < layout_.sceneRows(); ++row) {
@@ -90,25 +93,37 @@ class MovingBlur {
   void sharpenRow(const float* in, std::size_t row, float* out) const;
   std::size_t sharpenBehind(const float* scene, std::size_t prepared);
   void clearSum(std::size_t row);
-  void gather(std::size_t row);
-  void scatter(std::size_t row);
-  /// Row r of the image reaches rows r + 1 to r + reached() of the scene.
-  std::size_t reached() const { return 2 * layout_.margin(); }
-  const SceneLayout::Tap* tapsOf(std::size_t row) const {
-    return taps_.data() + row / kRowsAlike * instants_ * layout_.blocks();
+  void gather(std::size_t group);
+  void scatter(std::size_t group);
+  /// Calls use(row, values) for the rows of a group, and clears those beyond the image.
+  template <typename Use>
+  void forRows(std::size_t group, Use use) {
+    float* values = rows_.data() + kFloatBlock;
+    for (std::size_t i = 0; i < kRowsAlike; ++i, values += layout_.stride()) {
+      const std::size_t row = group * kRowsAlike + i;
+      if (row < layout_.rows()) {
+        use(row, values);
+      } else {
+        std::fill_n(values, layout_.stride(), 0.0F);
+      }
+    }
   }
-  /// From the first of rows alike to this one, in the scene.
-  std::size_t fromFirst(std::size_t row) const { return row % kRowsAlike * layout_.sceneStride(); }
+  /// Row r of the image reaches rows r + 1 to r + 2 margin() of the scene.
+  std::size_t lastReached(std::size_t group) const {
+    return (group + 1) * kRowsAlike - 1 + 2 * layout_.margin();
+  }
+  const SceneLayout::Tap* tapsOf(std::size_t group) const {
+    return taps_.data() + group * instants_ * layout_.blocks();
+  }
 
   SceneLayout layout_;
   std::size_t instants_ = 1;
-  std::vector<SceneLayout::Tap> taps_;  ///< [row / kRowsAlike][instant][block]
+  std::vector<SceneLayout::Tap> taps_;  ///< [group][instant][block]
   float lost_x_ = 0.0F;                 ///< by interpolation: mean of f (1 - f) / 2
   float lost_y_ = 0.0F;
   std::vector<float> sharpened_;
-  std::vector<float> sum_;      ///< of what was scattered
-  std::vector<float> row_;      ///< of the image
-  std::vector<float> shifted_;  ///< the same, each block by one pixel
+  std::vector<float> sum_;   ///< of what was scattered
+  std::vector<float> rows_;  ///< of the image, those of a group, behind a block of zeros
 };
 
 }  // namespace fast_edi

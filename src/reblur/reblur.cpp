@@ -35,21 +35,25 @@ std::size_t instantsFor(float path_px) {
       std::clamp(std::ceil(path_px / kInstantsApart_px), kFewestInstants, kMostInstants));
 }
 
-void scale(std::vector<float>& values, float by) {
-  if (by != 1.0F) {
-    for (float& value : values) {
-      value *= by;
-    }
-  }
-}
-
 }  // namespace
 
-void Reblur::fitMotion(const Frame& frame, const PixelEventLists& lists,
+/// Levels without the noise that stays in the image [8-bit DN].
+const float* Reblur::loadLevels(const Frame& frame, float dn) {
+  const float* levels = frame.clean_dn != nullptr ? frame.clean_dn : blended_.data();
+  if (dn == 1.0F) {
+    return levels;
+  }
+  level_dn_.resize(blended_.size());
+  std::transform(levels, levels + level_dn_.size(), level_dn_.begin(),
+                 [dn](float level) { return level * (1.0F / dn); });
+  return level_dn_.data();
+}
+
+void Reblur::fitMotion(const Frame& frame, const float* level_dn, const PixelEventLists& lists,
                        const LatentGains::Model& model, float offset_dn) {
   constexpr double kHalf = 0.5;
-  log_.resize(level_dn_.size());
-  logLevels(level_dn_.data(), level_dn_.size(), offset_dn, log_.data());
+  log_.resize(blended_.size());
+  logLevels(level_dn, log_.size(), offset_dn, log_.data());
   changes_.measure(lists, frame.window, frame.counts, *frame.quarters, model);
   const auto contrast = static_cast<float>(kHalf * (model.thresholds.on + model.thresholds.off));
   fitted_ = fit_->fit(log_.data(), changes_, frame.mean_counts, contrast);
@@ -67,21 +71,18 @@ void Reblur::apply(const Frame& frame, const PixelEventLists& lists,
     size_ = image.size;
     fit_ = std::make_unique<MotionFit>(size_);
   }
-  trust_.clear(size_);
   const auto dn = static_cast<float>(dnPerDn8(image.format));
   const auto offset_dn = static_cast<float>(response.offsetDn());
   blended_.resize(size_.pixelCount());
   loadPlane({image.data, image.size, image.step, image.format}, 0, blended_.data());
-  const float* levels = frame.clean_dn != nullptr ? frame.clean_dn : blended_.data();
-  level_dn_.assign(levels, levels + blended_.size());
-  scale(level_dn_, 1.0F / dn);
-  fitMotion(frame, lists, model, offset_dn);
+  const float* level_dn = loadLevels(frame, dn);
+  fitMotion(frame, level_dn, lists, model, offset_dn);
   if (!isUsable(fitted_)) {
+    trust_.clear(size_);
     return;
   }
   blur_.set(fitted_.motion, SceneLayout(size_, fitted_.reach_px), instantsFor(fitted_.path_px));
-  solver_.solve({frame.blurry_dn, level_dn_.data(), frame.mean_counts, frame.noise_dn, offset_dn},
-                blur_);
+  solver_.solve({frame.blurry_dn, level_dn, frame.mean_counts, frame.noise_dn, offset_dn}, blur_);
   const auto contrast = static_cast<float>(kHalf * (model.thresholds.on + model.thresholds.off));
   trust_.measure(
       {fitted_.motion, changes_, fitted_.event_share, contrast, frame.noise_dn, offset_dn},

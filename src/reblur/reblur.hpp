@@ -64,8 +64,9 @@ class Reblur {
   std::size_t memoryBytes() const;
 
  private:
-  void fitMotion(const Frame& frame, const PixelEventLists& lists, const LatentGains::Model& model,
-                 float offset_dn);
+  const float* loadLevels(const Frame& frame, float dn);
+  void fitMotion(const Frame& frame, const float* level_dn, const PixelEventLists& lists,
+                 const LatentGains::Model& model, float offset_dn);
   void blend(float dn);
 
   SensorSize size_;
@@ -75,8 +76,8 @@ class Reblur {
   MovingBlur blur_;
   ResidualSolver solver_;
   TrustMap trust_;
-  std::vector<float> level_dn_;
-  std::vector<float> blended_;  ///< [DN of the image]
+  std::vector<float> level_dn_;  ///< of images whose unit is another one
+  std::vector<float> blended_;   ///< [DN of the image]
   std::vector<float> log_;
 };
 

@@ -18,13 +18,19 @@ constexpr float kFreeWithEvents = 0.1F;
 constexpr float kSmoothness = 0.2F;  ///< [1/DN^2]
 constexpr float kEdge_dn = 3.0F;
 
+/// Of a row of whole blocks.
 FAST_EDI_VECTOR_CLONES
-void anchors(const float* __restrict level, const float* __restrict count, std::size_t pixels,
-             float offset, float* __restrict anchor) {
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const float spread =
-        kFree_dn + kFreeWithEvents * std::min(1.0F, count[i]) * (level[i] + offset);
-    anchor[i] = 1.0F / (spread * spread);
+void anchors(const float* level, const float* count, std::size_t pixels, float offset,
+             float* anchor) {
+  for (std::size_t i = 0; i < pixels; i += kFloatBlock) {
+    FloatBlock spread;
+    FloatBlock events;
+    std::memcpy(&spread, level + i, sizeof(spread));
+    std::memcpy(&events, count + i, sizeof(events));
+    events = events < 1.0F ? events : events - events + 1.0F;
+    spread = kFree_dn + kFreeWithEvents * events * (spread + offset);
+    spread = 1.0F / (spread * spread);
+    std::memcpy(anchor + i, &spread, sizeof(spread));
   }
 }
 
@@ -42,7 +48,8 @@ FAST_EDI_VECTOR_CLONES
 void residuals(const float* __restrict blurry, const float* __restrict reblurred, std::size_t count,
                float* __restrict residual) {
   for (std::size_t i = 0; i < count; ++i) {
-    residual[i] = blurry[i] >= kSaturated_dn ? 0.0F : blurry[i] - reblurred[i];
+    const float seen = blurry[i] < kSaturated_dn ? 1.0F : 0.0F;
+    residual[i] = seen * (blurry[i] - reblurred[i]);
   }
 }
 
@@ -53,8 +60,8 @@ void precisions(const float* __restrict blurry, const float* __restrict residual
   const float variance = noise * noise;
   const float robust = 1.0F / (kRobust * kRobust * variance);
   for (std::size_t i = 0; i < count; ++i) {
-    const float value = 1.0F / (variance * (1.0F + robust * residual[i] * residual[i]));
-    precision[i] = blurry[i] >= kSaturated_dn ? 0.0F : value;
+    const float seen = blurry[i] < kSaturated_dn ? 1.0F : 0.0F;
+    precision[i] = seen / (variance * (1.0F + robust * residual[i] * residual[i]));
   }
 }
 

@@ -2,7 +2,8 @@
 /// How planes of the scene and of the image lie in memory while an image is re-blurred.
 ///
 /// During the exposure more of the scene is seen than in the middle of it. So the scene has a
-/// margin on all sides, of whole blocks, as wide as the image moves. Both kinds of planes have rows
+/// margin on all sides, of whole blocks, as wide as the image moves, and whole groups of rows. Both
+/// kinds of planes have rows
 /// of whole blocks; one displacement serves a block in a few rows, so that all loads are
 /// contiguous.
 #pragma once
@@ -46,6 +47,7 @@ class SceneLayout {
 
   SensorSize size() const { return size_; }
   std::size_t rows() const { return static_cast<std::size_t>(size_.height); }
+  std::size_t groups() const { return (rows() + kRowsAlike - 1) / kRowsAlike; }  ///< of rows alike
   std::size_t blocks() const { return blocks_; }  ///< in a row of the image
   std::size_t stride() const { return blocks_ * kFloatBlock; }
   std::size_t imageFloats() const { return stride() * rows(); }
@@ -53,7 +55,7 @@ class SceneLayout {
   float reach() const { return reach_px_; }
   std::size_t margin() const { return margin_; }
   std::size_t sceneStride() const { return stride() + 2 * margin_; }
-  std::size_t sceneRows() const { return rows() + 2 * margin_; }
+  std::size_t sceneRows() const { return groups() * kRowsAlike + 2 * margin_; }
   std::size_t sceneFloats() const { return sceneStride() * sceneRows(); }
   /// Index of a pixel of the image in the scene.
   std::size_t inScene(std::size_t x, std::size_t y) const {
@@ -70,10 +72,10 @@ class SceneLayout {
     constexpr float kMiddle = 0.5F * static_cast<float>(kFloatBlock - 1);
     return static_cast<float>(block * kFloatBlock) + kMiddle;
   }
-  /// Middle of the rows alike that a row belongs to.
-  static float centreOfRows(std::size_t row) {
+  /// Middle of a group of rows alike.
+  static float centreOfGroup(std::size_t group) {
     constexpr float kMiddle = 0.5F * static_cast<float>(kRowsAlike - 1);
-    return static_cast<float>(row / kRowsAlike * kRowsAlike) + kMiddle;
+    return static_cast<float>(group * kRowsAlike) + kMiddle;
   }
   /// Displacements beyond the margin are cut off.
   Tap tap(std::size_t block, std::size_t y, const Displacement& u) const {

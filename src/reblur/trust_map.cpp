@@ -256,8 +256,16 @@ void TrustMap::halveScene(const Input& input, const SceneLayout& layout,
   logLevels(log_scene_.data(), log_scene_.size(), input.offset_dn, log_scene_.data());
 }
 
-void TrustMap::findContradictions(const Input& input) {
+void TrustMap::fillTaps(const ImageMotion& motion, const ImageMotion::Parts& c, std::size_t group) {
   constexpr float kHalf = 0.5F;
+  const float y = 2.0F * SceneLayout::centreOfGroup(group) + kHalf;
+  for (std::size_t block = 0; block < half_.blocks(); ++block) {
+    const Displacement u = motion.displace(c, 2.0F * SceneLayout::centreOf(block) + kHalf, y);
+    taps_[block] = half_.tap(block, group * kRowsAlike, {kHalf * u.x, kHalf * u.y});
+  }
+}
+
+void TrustMap::findContradictions(const Input& input) {
   const auto width = static_cast<std::size_t>(half_.size().width);
   const auto full_width = static_cast<std::size_t>(size_.width);
   could_.assign(half_.imageFloats(), 0);
@@ -268,16 +276,15 @@ void TrustMap::findContradictions(const Input& input) {
     const ImageMotion::Parts c = input.motion.at(EventChanges::kTau[k]);
     const float* change = input.changes.at(k).data();
     for (std::size_t y = 0; y < half_.rows(); ++y) {
-      for (std::size_t block = 0; block < half_.blocks(); ++block) {
-        const Displacement u = input.motion.displace(c, 2.0F * SceneLayout::centreOf(block) + kHalf,
-                                                     2.0F * static_cast<float>(y) + kHalf);
-        taps_[block] = half_.tap(block, y, {kHalf * u.x, kHalf * u.y});
+      if (y % kRowsAlike == 0) {
+        fillTaps(input.motion, c, y / kRowsAlike);
       }
       const float* upper = change + 2 * y * full_width;
       halveRow(upper, upper + full_width, width, row_.data());
       scaleRow(width, 1.0F / input.event_share, row_.data());
       compareRow(
-          {log_scene_.data() + half_.inScene(0, y), log_scene_.data(), half_.sceneStride(),
+          {log_scene_.data() + half_.inScene(0, y),
+           log_scene_.data() + y % kRowsAlike * half_.sceneStride(), half_.sceneStride(),
            row_.data(), could_.data() + y * half_.stride(), does_.data() + y * half_.stride()},
           taps_.data(), half_.blocks(), input.contrast);
     }

@@ -52,6 +52,7 @@ class TrustMap {
 
  private:
   void halveScene(const Input& input, const SceneLayout& layout, const std::vector<float>& scene);
+  void fillTaps(const ImageMotion& motion, const ImageMotion::Parts& c, std::size_t group);
   void findContradictions(const Input& input);
   void explain(const SceneLayout& layout, const ResidualSolver& solved, float noise_dn);
   void judgeNeighbourhood();
@@ -61,7 +62,7 @@ class TrustMap {
   SceneLayout half_;  ///< of planes at half the resolution, as all but the last one are
   std::vector<float> log_scene_;
   std::vector<float> row_;
-  std::vector<SceneLayout::Tap> taps_;  ///< of a row
+  std::vector<SceneLayout::Tap> taps_;  ///< of a group of rows
   std::vector<std::int32_t> could_;     ///< -1 or 0, as planes of the image in whole blocks
   std::vector<std::int32_t> does_;
   std::vector<float> contradicts_;  ///< 1 or 0, row-major

@@ -18,9 +18,9 @@ class LaterQuartersTest : public ::testing::Test {
  protected:
   LaterQuartersTest() {
     list = testing::makeEvents(testing::EventScene::kUniform, {kSize, 3000, 0, 40 * kMs, 1});
-    list.push_back({1, 2, true, 20 * kMs});  // exactly at the cuts
-    list.push_back({1, 2, true, 25 * kMs});
-    list.push_back({1, 2, true, 30 * kMs});
+    list.push_back({1, 2, 20 * kMs, true});  // exactly at the cuts
+    list.push_back({1, 2, 25 * kMs, true});
+    list.push_back({1, 2, 30 * kMs, true});
     std::stable_sort(list.begin(), list.end(),
                      [](const Event& a, const Event& b) { return a.t_ns < b.t_ns; });
     lists.append(testing::wireView(testing::toWire(list)));
