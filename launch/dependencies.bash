@@ -31,6 +31,7 @@ FAST_EDI_DEBIAN_TEST=(
   shellcheck
   clang
   python3-pytest python3-pil python3-matplotlib mypy
+  python3-venv python3-rospy
   xvfb xdotool
 )
 # Before Debian 12 this comes with clang.
@@ -56,6 +57,7 @@ FAST_EDI_NOETIC_TEST=(
   libxml2-utils shellcheck
   clang
   python3-pytest python3-pil python3-matplotlib mypy
+  python3-venv ros-noetic-rospy
   xvfb xdotool
 )
 
