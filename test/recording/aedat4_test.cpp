@@ -7,13 +7,13 @@
 #include <fstream>
 #include <iterator>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "fast_edi/exposure/stamp_limits.hpp"
 #include "fast_edi/recording/aedat4_reader.hpp"
 #include "fast_edi/recording/aedat4_writer.hpp"
 #include "fast_edi/recording/recording_error.hpp"
+#include "recording/compared_content.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace fast_edi {
@@ -32,44 +32,13 @@ const std::vector<RecordedStream>& cameraStreams() {
   return streams;
 }
 
-using EventRow = std::tuple<std::int64_t, int, int, bool>;
-using FrameRow = std::tuple<std::int64_t, std::int64_t, std::string, std::vector<std::uint8_t>>;
-
-struct Content {
-  std::vector<EventRow> events;
-  std::vector<FrameRow> frames;
-  std::vector<std::int64_t> samples;
-  std::vector<int> triggers;
-  std::vector<RecordingDamage> damage;
-  bool times_in_order = true;
-};
+using Content = testing::ComparedContent;
+using EventRow = Content::EventRow;
+using FrameRow = Content::FrameRow;
 
 Content readAll(const std::string& path) {
   Aedat4Reader reader(path);
-  Content content;
-  RecordingItem item;
-  std::int64_t before_ns = 0;
-  while (reader.next(item)) {
-    content.times_in_order &= item.record_ns >= before_ns;
-    before_ns = item.record_ns;
-    if (const auto* events = std::get_if<RecordedEvents>(&item.content)) {
-      for (std::size_t i = 0; i < events->count; ++i) {
-        const Event& event = events->data[i];
-        content.events.emplace_back(event.t_ns, event.x, event.y, event.on);
-      }
-    } else if (const auto* frame = std::get_if<RecordedFrame>(&item.content)) {
-      const ExposureInterval exposure = frame->exposure.value_or(ExposureInterval{});
-      content.frames.emplace_back(
-          exposure.start_ns, exposure.end_ns, frame->encoding,
-          std::vector<std::uint8_t>(frame->pixels, frame->pixels + frame->bytes));
-    } else if (const auto* sample = std::get_if<RecordedImu>(&item.content)) {
-      content.samples.push_back(sample->t_ns);
-    } else if (const auto* trigger = std::get_if<RecordedTrigger>(&item.content)) {
-      content.triggers.push_back(trigger->type);
-    }
-  }
-  content.damage = reader.damage();
-  return content;
+  return testing::readForComparison(reader);
 }
 
 std::vector<char> bytesOf(const std::string& path) {

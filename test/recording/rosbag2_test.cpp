@@ -26,6 +26,7 @@
 #include "fast_edi/recording/open_recording.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "fast_edi/recording/rosbag2_reader.hpp"
+#include "recording/compared_content.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace fast_edi {
@@ -42,40 +43,12 @@ using ::testing::SizeIs;
 
 const std::string kData = std::string(FAST_EDI_SOURCE_DIR) + "/test/data/recordings/";
 
-using EventRow = std::tuple<std::int64_t, int, int, bool>;
-using FrameRow = std::tuple<std::int64_t, std::int64_t, std::string, std::vector<std::uint8_t>>;
-
-struct Content {
-  std::vector<EventRow> events;
-  std::vector<FrameRow> frames;
-  std::size_t calibrations = 0;
-  std::vector<RecordingDamage> damage;
-  bool times_in_order = true;
-};
+using Content = testing::ComparedContent;
+using EventRow = Content::EventRow;
 
 Content readAll(Recording& recording) {
-  Content content;
-  RecordingItem item;
-  std::int64_t before_ns = 0;
-  while (recording.next(item)) {
-    content.times_in_order &= item.record_ns >= before_ns;
-    before_ns = item.record_ns;
-    if (const auto* events = std::get_if<RecordedEvents>(&item.content)) {
-      for (std::size_t i = 0; i < events->count; ++i) {
-        const Event& event = events->data[i];
-        content.events.emplace_back(event.t_ns, event.x, event.y, event.on);
-      }
-    } else if (const auto* frame = std::get_if<RecordedFrame>(&item.content)) {
-      const ExposureInterval exposure = frame->exposure.value_or(ExposureInterval{});
-      content.frames.emplace_back(
-          exposure.start_ns, exposure.end_ns, frame->encoding,
-          std::vector<std::uint8_t>(frame->pixels, frame->pixels + frame->bytes));
-    } else if (std::holds_alternative<RecordedCalibration>(item.content)) {
-      ++content.calibrations;
-    }
-  }
+  Content content = testing::readForComparison(recording);
   EXPECT_EQ(recording.position(), recording.length());
-  content.damage = recording.damage();
   return content;
 }
 
