@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "bags/deblur_steps.hpp"
 #include "calibration/learned_contrast.hpp"
 #include "fast_edi/base/number_text.hpp"
 
@@ -107,30 +108,44 @@ BagDeblurrer::BagDeblurrer(MessageSource& reader, BagWriter* writer, const Topic
       camera_info_topic_(topics.outputCameraInfo()),
       latent_topic_(topics.outputLatent()),
       write_latent_(parameters.deblur.latent.rate_hz == 0),
+      filter_(parameters.deblur.filter),
       progress_(std::move(progress)),
       pipeline_(topics, parameters) {
   report_.given_thresholds = parameters.deblur.thresholds;
 }
 
+void BagDeblurrer::setThreads(std::size_t threads) {
+  threads_ = threads;
+  if (threads_ > 1) {
+    pipeline_.deferWork();
+  }
+}
+
 BagDeblurReport BagDeblurrer::run() {
   const auto start = std::chrono::steady_clock::now();
-  BagMessage message;
-  while (!(report_.interrupted = stop_requested_ && stop_requested_()) && reader_.next(message)) {
-    if (!message.decoded) {
-      if (writer_ != nullptr) {
-        writer_->copy(message);
-      }
-      ++report_.messages;
-    }
-    report_.last_record_time = message.time;
-    if (!pipeline_.add(message)) {
-      ++report_.malformed_messages;
-    }
-    writeOutputs(message.time);
-    progress_(reader_.position(), reader_.length());
+  DeblurSteps steps;
+  steps.stops = [this] { return report_.interrupted = stop_requested_ && stop_requested_(); };
+  steps.read = [this](ReadMessage& read_message) {
+    const bool more = reader_.next(read_message.message);
+    read_message.position = reader_.position();
+    read_message.length = reader_.length();
+    return more;
+  };
+  steps.copy = [this](const ReadMessage& read_message) {
+    copy(read_message.message);
+    progress_(read_message.position, read_message.length);
+  };
+  steps.integrate = [this](const BagMessage& message) { return integrate(message); };
+  steps.finish = [this] { return finish(); };
+  steps.write = [this](const BagPipeline::Output& output, const ros::Time& record_time) {
+    write(output, record_time);
+  };
+  steps.filter = filter_;
+  if (threads_ > 1) {
+    deblurOnThreads(steps, threads_);
+  } else {
+    deblurStepByStep(steps);
   }
-  pipeline_.finish();
-  writeOutputs(report_.last_record_time);
   report_.counters = pipeline_.counters();
   const DeblurStatus status = pipeline_.status();
   report_.differing_clocks = status.differing_clocks;
@@ -141,22 +156,44 @@ BagDeblurReport BagDeblurrer::run() {
   return report_;
 }
 
-void BagDeblurrer::writeOutputs(const ros::Time& record_time) {
-  for (const BagPipeline::Output& output : pipeline_.takeOutputs()) {
+// Members of the report: each is touched by one step alone.
+
+void BagDeblurrer::copy(const BagMessage& message) {
+  if (!message.decoded) {
     if (writer_ != nullptr) {
-      writer_->write(image_topic_, record_time, *output.image);
-      writer_->write(camera_info_topic_, record_time, *output.info);
-      for (const sensor_msgs::ImagePtr& latent : output.latent) {
-        if (write_latent_) {
-          writer_->write(latent_topic_, record_time, *latent);
-        }
+      writer_->copy(message);
+    }
+    ++report_.messages;
+  }
+}
+
+std::vector<BagPipeline::Output> BagDeblurrer::integrate(const BagMessage& message) {
+  report_.last_record_time = message.time;
+  if (!pipeline_.add(message)) {
+    ++report_.malformed_messages;
+  }
+  return pipeline_.takeOutputs();
+}
+
+std::vector<BagPipeline::Output> BagDeblurrer::finish() {
+  pipeline_.finish();
+  return pipeline_.takeOutputs();
+}
+
+void BagDeblurrer::write(const BagPipeline::Output& output, const ros::Time& record_time) {
+  if (writer_ != nullptr) {
+    writer_->write(image_topic_, record_time, *output.image);
+    writer_->write(camera_info_topic_, record_time, *output.info);
+    for (const sensor_msgs::ImagePtr& latent : output.latent) {
+      if (write_latent_) {
+        writer_->write(latent_topic_, record_time, *latent);
       }
     }
-    if (output_handler_) {
-      output_handler_(output);
-    }
-    ++report_.outputs;
   }
+  if (output_handler_) {
+    output_handler_(output);
+  }
+  ++report_.outputs;
 }
 
 }  // namespace fast_edi

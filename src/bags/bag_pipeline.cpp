@@ -13,9 +13,20 @@
 
 #include "fast_edi/bags/bag_deserialise.hpp"
 #include "fast_edi/messages/event_array.hpp"
+#include "pipeline/frame_renderer.hpp"
 
 namespace fast_edi {
 namespace {
+
+std::vector<std::uint8_t> trustPixels(const std::vector<float>& trust) {
+  constexpr float kMost = 255.0F;
+  std::vector<std::uint8_t> pixels;
+  pixels.reserve(trust.size());
+  for (const float share : trust) {
+    pixels.push_back(static_cast<std::uint8_t>(std::lround(kMost * share)));
+  }
+  return pixels;
+}
 
 /// \param trust of its pixels; empty: none is trusted
 sensor_msgs::ImagePtr makeTrustImage(const sensor_msgs::Image& like,
@@ -41,7 +52,7 @@ BagPipeline::BagPipeline(const TopicNames& topics, const LoadedParameters& param
                    const OutputFrame& frame) {
               // Only kept here: the pipeline's calls must not throw, and writing to a full disk
               // does.
-              outputs_.push_back({image, info, frame, {}, nullptr});
+              outputs_.push_back({image, info, frame, {}, nullptr, std::exchange(work_, nullptr)});
               if (shows_trust_) {
                 outputs_.back().trust = makeTrustImage(*image, std::exchange(trust_, {}));
               }
@@ -54,14 +65,19 @@ BagPipeline::BagPipeline(const TopicNames& topics, const LoadedParameters& param
 }
 
 void BagPipeline::showTrust() {
-  constexpr float kMost = 255.0F;
   shows_trust_ = true;
-  sink_.setTrust([this](const std::vector<float>& trust) {
-    trust_.clear();
-    for (const float share : trust) {
-      trust_.push_back(static_cast<std::uint8_t>(std::lround(kMost * share)));
-    }
-  });
+  sink_.setTrust([this](const std::vector<float>& trust) { trust_ = trustPixels(trust); });
+}
+
+void BagPipeline::deferWork() {
+  sink_.setDefer([this](FrameWork work) { work_ = std::move(work); });
+}
+
+void BagPipeline::complete(Output& output, FrameRenderer& renderer) {
+  if (output.work && output.work(renderer) && output.trust) {
+    output.trust = makeTrustImage(*output.image, trustPixels(renderer.trust()));
+  }
+  output.work = nullptr;  // with the memory that it holds
 }
 
 bool BagPipeline::add(const BagMessage& message) {

@@ -25,7 +25,7 @@ void EventLog::reset(std::size_t pixels, std::size_t max_events) {
 
 void EventLog::flush() {
   while (!chunks_.empty()) {
-    free_chunks_.push_back(std::move(chunks_.back()));
+    recycle(std::move(chunks_.back()));
     chunks_.pop_back();
   }
   working_set_ = 0;
@@ -60,17 +60,18 @@ void EventLog::keepIntervals(bool keep) {
     return;
   }
   keeps_intervals_ = keep;
+  unshare();
   if (!keep) {
     intervals_.release();
     for (auto* chunks : {&chunks_, &free_chunks_}) {
-      for (const std::unique_ptr<Chunk>& chunk : *chunks) {
+      for (const std::shared_ptr<Chunk>& chunk : *chunks) {
         chunk->intervals = {};
       }
     }
     return;
   }
   intervals_.reset(pixels_);
-  for (const std::unique_ptr<Chunk>& chunk : chunks_) {
+  for (const std::shared_ptr<Chunk>& chunk : chunks_) {
     measureIntervals(*chunk, 0, chunk->count);
   }
 }
@@ -117,17 +118,71 @@ void EventLog::overflow() {
 }
 
 void EventLog::dropFront() {
-  std::unique_ptr<Chunk> front = std::move(chunks_.front());
+  std::shared_ptr<Chunk> front = std::move(chunks_.front());
   chunks_.erase(chunks_.begin());
   complete_from_ns_ = front->newest() + 1;
   begin_sequence_ = front->endSequence();
-  free_chunks_.push_back(std::move(front));
+  recycle(std::move(front));
+}
+
+/// Keeps a chunk's memory for later, unless another log may still read it.
+void EventLog::recycle(std::shared_ptr<Chunk> chunk) {
+  if (!chunk->is_shared) {
+    free_chunks_.push_back(std::move(chunk));
+  }
+}
+
+void EventLog::share(const EventLog& other, std::int64_t from_ns, std::int64_t to_ns) {
+  chunks_.clear();
+  pixels_ = other.pixels_;
+  max_events_ = other.max_events_;
+  keeps_intervals_ = other.keeps_intervals_;
+  complete_from_ns_ = other.complete_from_ns_;
+  begin_sequence_ = other.end_sequence_;
+  end_sequence_ = other.end_sequence_;
+  for (const std::shared_ptr<Chunk>& chunk : other.chunks_) {
+    if (chunk->newest() < from_ns || chunk->time(0) >= to_ns) {
+      continue;
+    }
+    if (chunk == other.chunks_.back()) {
+      chunks_.push_back(copyOf(*chunk));  // it grows
+    } else {
+      chunk->is_shared = true;
+      chunks_.push_back(chunk);
+    }
+  }
+  if (!chunks_.empty()) {
+    begin_sequence_ = chunks_.front()->first_sequence;
+    end_sequence_ = chunks_.back()->endSequence();
+  }
+}
+
+std::shared_ptr<EventLog::Chunk> EventLog::copyOf(const Chunk& chunk) {
+  std::shared_ptr<Chunk> copy(new Chunk);
+  copy->base_ns = chunk.base_ns;
+  copy->first_sequence = chunk.first_sequence;
+  copy->count = chunk.count;
+  std::copy(chunk.events, chunk.events + chunk.count, copy->events);
+  if (!chunk.intervals.empty()) {
+    copy->intervals.resize(kChunkEvents);
+    std::copy_n(chunk.intervals.begin(), chunk.count, copy->intervals.begin());
+  }
+  return copy;
+}
+
+/// Makes all chunks this log's own, before they are written to.
+void EventLog::unshare() {
+  for (std::shared_ptr<Chunk>& chunk : chunks_) {
+    if (chunk->is_shared) {
+      chunk = copyOf(*chunk);
+    }
+  }
 }
 
 std::size_t EventLog::memoryBytes() const {
   std::size_t bytes = (chunks_.size() + free_chunks_.size()) * sizeof(Chunk);
   for (const auto* chunks : {&chunks_, &free_chunks_}) {
-    for (const std::unique_ptr<Chunk>& chunk : *chunks) {
+    for (const std::shared_ptr<Chunk>& chunk : *chunks) {
       bytes += chunk->intervals.capacity() * sizeof(std::uint16_t);
     }
   }

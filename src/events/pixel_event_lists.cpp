@@ -28,6 +28,14 @@ PixelEventLists::PixelEventLists(SensorSize size, Limits limits) {
   reset(size, limits);
 }
 
+PixelEventLists::PixelEventLists(const PixelEventLists& other, const ExposureInterval& window)
+    : size_(other.size_),
+      limits_(other.limits_),
+      newest_ns_(other.newest_ns_),
+      has_newest_(other.has_newest_) {
+  log_.share(other.log_, window.start_ns, window.end_ns);
+}
+
 PixelEventLists::~PixelEventLists() = default;
 
 void PixelEventLists::reset(SensorSize size, Limits limits) {

@@ -1,12 +1,53 @@
 #include "pipeline/reconstruction.hpp"
 
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include "fast_edi/base/stored_image.hpp"
 #include "fast_edi/filters/exposure_events.hpp"
 
 namespace fast_edi {
+namespace {
+
+/// What rendering a frame needs, while the pipeline goes on.
+struct FrameCopy {
+  FrameCopy(const Reconstruction::Frame& frame, WindowIntegral& integral,
+            const LaterQuarters* quarters_of_window, const PixelEventLists& from)
+      : input(frame.output.input),
+        window(frame.window),
+        gains(integral.gains()),
+        counts(integral.counts().data(),
+               integral.counts().data() + 2 * integral.counts().pixelCount()),
+        lists(from, frame.window) {
+    if (quarters_of_window != nullptr) {
+      quarters = *quarters_of_window;
+    }
+  }
+
+  InputFrame input;
+  ExposureInterval window;
+  std::vector<float> gains;
+  std::vector<std::uint16_t> counts;
+  std::optional<LaterQuarters> quarters;
+  PixelEventLists lists;
+};
+
+FrameWork workOn(std::shared_ptr<FrameCopy> frame, const LatentGains::Model& model,
+                 const CameraResponse& response, const MutableImageView& image) {
+  return [frame = std::move(frame), model, response, image](FrameRenderer& renderer) {
+    return renderer.render(
+        {frame->input.image, frame->window, frame->gains.data(), frame->counts.data(),
+         frame->quarters ? &*frame->quarters : nullptr, frame->lists},
+        model, response, image);
+  };
+}
+
+}  // namespace
 
 void Reconstruction::setFilter(const FilterParameters& filter) {
-  latent_image_.setParameters(filter);
+  renderer_.setFilter(filter);
   interrupt();
 }
 
@@ -35,16 +76,18 @@ void Reconstruction::render(const Frame& frame, WindowIntegral& integral, const 
     middle_.take(integral.gains(), lists, frame.reference(), model);
   }
   const MutableImageView image = sink_.begin(input);
-  if (image.data != nullptr) {
-    latent_image_.write(input.image, integral.gains().data(), counts, parameters.response, image);
-    if (WindowIntegral::countingFor(parameters) == WindowIntegral::Counting::kQuarters &&
-        Reblur::supports(image.format, parameters.response)) {
-      reblur_.apply({frame.window, latent_image_.blurryLevels().data(), latent_image_.meanCounts(),
-                     latent_image_.frameNoise(), integral.counts().data(), &integral.quarters(),
-                     latent_image_.cleanLevels()},
-                    lists, model, parameters.response, image);
-      sink_.noteTrust(reblur_.trust());
-    }
+  const LaterQuarters* quarters =
+      WindowIntegral::countingFor(parameters) == WindowIntegral::Counting::kQuarters
+          ? &integral.quarters()
+          : nullptr;
+  if (image.data != nullptr && mayDefer(parameters)) {
+    sink_.defer(workOn(std::make_shared<FrameCopy>(frame, integral, quarters, lists), model,
+                       parameters.response, image));
+  } else if (image.data != nullptr &&
+             renderer_.render({input.image, frame.window, integral.gains().data(),
+                               integral.counts().data(), quarters, lists},
+                              model, parameters.response, image)) {
+    sink_.noteTrust(renderer_.trust());
   }
   if (stabilises) {
     const ImageView middle = stabilise(frame, counts, events, parameters, image);
@@ -56,6 +99,16 @@ void Reconstruction::render(const Frame& frame, WindowIntegral& integral, const 
     fusion_.apply({frame.reference(), frame.window.length(), frame.epoch}, events, model,
                   parameters.response, filter.temporal, image);
   }
+}
+
+/// Whether nothing but the sink waits for the latent image.
+/// \pre wants_video_ is that of this frame
+bool Reconstruction::mayDefer(const DeblurParameters& parameters) const {
+  const FilterParameters& filter = parameters.filter;
+  const bool is_fused = filter.enabled && filter.temporal > 0.0;
+  const bool is_moved =
+      filter.enabled && filter.motion && parameters.reference != ExposureInstant::kMid;
+  return sink_.takesWork() && !wants_video_ && !is_fused && !is_moved;
 }
 
 /// Stabilises the latent image at the reference by that of mid-exposure, unless it is that.
@@ -88,8 +141,8 @@ void Reconstruction::copy(const InputFrame& input) {
 }
 
 std::size_t Reconstruction::memoryBytes() const {
-  return fusion_.memoryBytes() + latent_image_.memoryBytes() + video_.memoryBytes() +
-         middle_.memoryBytes() + reblur_.memoryBytes() + compensation_.memoryBytes();
+  return fusion_.memoryBytes() + renderer_.memoryBytes() + video_.memoryBytes() +
+         middle_.memoryBytes() + compensation_.memoryBytes();
 }
 
 }  // namespace fast_edi

@@ -9,14 +9,13 @@
 #include "fast_edi/base/frame_sink.hpp"
 #include "fast_edi/base/image.hpp"
 #include "fast_edi/events/event_stream.hpp"
-#include "fast_edi/latent/latent_image.hpp"
 #include "fast_edi/latent/middle_image.hpp"
 #include "fast_edi/latent/motion_compensation.hpp"
 #include "fast_edi/latent/temporal_fusion.hpp"
 #include "fast_edi/parameters/parameters.hpp"
 #include "fast_edi/video/latent_video.hpp"
+#include "pipeline/frame_renderer.hpp"
 #include "pipeline/window_integral.hpp"
-#include "reblur/reblur.hpp"
 
 namespace fast_edi {
 
@@ -35,15 +34,15 @@ class Reconstruction {
   /// \param sink must outlive this object
   Reconstruction(FrameSink& sink, const FilterParameters& filter)
       : sink_(sink),
-        latent_image_(filter),
-        middle_(latent_image_),
-        video_(sink, latent_image_, compensation_) {}
+        renderer_(filter),
+        middle_(renderer_.latentImage()),
+        video_(sink, renderer_.latentImage(), compensation_) {}
 
   void setFilter(const FilterParameters& filter);
   /// The next frame has no predecessor.
   void interrupt();
 
-  /// Asks the sink for memory and writes the latent image there.
+  /// Asks the sink for memory and writes the latent image there, or lets the sink do so later.
   /// \param integral of the frame; filters change its gains
   void render(const Frame& frame, WindowIntegral& integral, const EventStream& events,
               const DeblurParameters& parameters);
@@ -55,12 +54,12 @@ class Reconstruction {
   std::size_t memoryBytes() const;
 
  private:
+  bool mayDefer(const DeblurParameters& parameters) const;
   ImageView stabilise(const Frame& frame, const ExposureEvents& counts, const EventStream& events,
                       const DeblurParameters& parameters, const MutableImageView& image);
 
   FrameSink& sink_;
-  LatentImage latent_image_;
-  Reblur reblur_;
+  FrameRenderer renderer_;
   MiddleImage middle_;
   MotionCompensation compensation_;
   LatentVideo video_;

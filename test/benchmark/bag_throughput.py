@@ -64,7 +64,7 @@ def main():
             copy_s.append(json.loads(run([bag_tool, 'copy', recording, output]))['seconds'])
             os.remove(output)
             begin = time.monotonic()
-            summary = run([deblur_bag, 'filter:=false', '--in', recording, '--out', output,
+            summary = run([deblur_bag, '--threads', '1', 'filter:=false', '--in', recording, '--out', output,
                            'contrast_threshold_on:=0.3', 'contrast_threshold_off:=0.3'])
             deblur_s.append(time.monotonic() - begin)
             os.remove(output)

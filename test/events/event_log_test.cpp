@@ -112,5 +112,57 @@ TEST_F(EventLogTest, IntervalsAreTheSameWheneverTheyAreSwitchedOn) {
   EXPECT_EQ(all().intervals, nullptr);
 }
 
+TEST_F(EventLogTest, SharedEventsStayWhileTheLogGoesOn) {
+  log_.keepIntervals(true);
+  fill(2 * kChunk + 100);
+  EventLog shared;
+  shared.share(log_, kStart + 10, kStart + 2 * kChunk + 50);
+  ASSERT_EQ(shared.beginSequence(), 0u);
+  ASSERT_EQ(shared.endSequence(), 2 * kChunk + 100);
+  std::vector<std::uint16_t> intervals;
+  for (std::uint64_t next = 0; next < shared.endSequence();) {
+    const PackedEventSpan span = shared.span(next, shared.endSequence());
+    intervals.insert(intervals.end(), span.intervals, span.intervals + span.count);
+    next += span.count;
+  }
+  log_.discardBefore(kStart + 2 * kChunk);
+  log_.keepIntervals(false);
+  fill(3 * kChunk);  // into memory that is free again, and beyond the limit
+  log_.flush();
+  for (std::uint64_t next = 0; next < shared.endSequence();) {
+    const PackedEventSpan span = shared.span(next, shared.endSequence());
+    for (std::size_t i = 0; i < span.count; ++i, ++next) {
+      ASSERT_EQ(span.base_ns + span.data[i].dt_ns, kStart + static_cast<std::int64_t>(next));
+      ASSERT_EQ(span.data[i].code, next % kChunk % (2 * kPixels));
+      ASSERT_EQ(span.intervals[i], intervals[next]);
+    }
+  }
+}
+
+TEST_F(EventLogTest, SharesOnlyChunksWithSuchEvents) {
+  fill(3 * kChunk);
+  EventLog shared;
+  shared.share(log_, kStart + kChunk, kStart + 2 * kChunk);
+  EXPECT_EQ(shared.beginSequence(), kChunk);
+  EXPECT_EQ(shared.endSequence(), 2 * kChunk);
+  EXPECT_EQ(shared.lowerBound(kStart + kChunk + 7), log_.lowerBound(kStart + kChunk + 7));
+  EXPECT_EQ(shared.lowerBound(kStart + 2 * kChunk), log_.lowerBound(kStart + 2 * kChunk));
+  EXPECT_FALSE(shared.keepsIntervals());
+  shared.share(log_, kStart + 4 * kChunk, kStart + 5 * kChunk);
+  EXPECT_TRUE(shared.empty());
+}
+
+TEST_F(EventLogTest, MemoryThatWasSharedIsNotWrittenAgain) {
+  fill(2 * kChunk);
+  EventLog shared;
+  shared.share(log_, kStart, kStart + kChunk);
+  const PackedEvent* const first = shared.span(0, 1).data;
+  EXPECT_EQ(first, log_.span(0, 1).data) << "copied";
+  log_.discardBefore(kStart + kChunk);
+  fill(1);
+  EXPECT_NE(log_.tail().events, first + 1);
+  EXPECT_NE(log_.span(2 * kChunk, 2 * kChunk + 1).data, first);
+}
+
 }  // namespace
 }  // namespace fast_edi

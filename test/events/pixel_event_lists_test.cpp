@@ -526,5 +526,34 @@ TEST(PixelEventLists, AllocatesNothingInSteadyState) {
   EXPECT_EQ(lists.memoryBytes(), bytes_before);
 }
 
+TEST(PixelEventLists, OthersHoldTheEventsOfAWindow) {
+  PixelEventLists lists(kSize, {});
+  append(lists, uniformEvents(300'000, kStart, kSecond));
+  const ExposureInterval window{kStart + 400 * kMillisecond, kStart + 500 * kMillisecond};
+  const PixelEventLists others(lists, window);
+  EXPECT_EQ(others.size(), lists.size());
+  EXPECT_EQ(others.newest(), lists.newest());
+  EXPECT_LT(others.eventCount(), lists.eventCount());
+  const std::uint64_t begin = lists.lowerBound(window.start_ns);
+  const std::uint64_t end = lists.lowerBound(window.end_ns);
+  ASSERT_EQ(others.lowerBound(window.start_ns), begin);
+  ASSERT_EQ(others.lowerBound(window.end_ns), end);
+  lists.discardBefore(kStart + kSecond);
+  append(lists, uniformEvents(300'000, kStart + kSecond, kSecond));
+  std::uint64_t events = 0;
+  for (std::uint64_t next = begin; next < end;) {
+    const PackedEventSpan span = others.span(next, end);
+    ASSERT_GT(span.count, 0u);
+    for (std::size_t i = 0; i < span.count; ++i) {
+      const std::int64_t t_ns = span.base_ns + static_cast<std::int64_t>(span.data[i].dt_ns);
+      ASSERT_GE(t_ns, window.start_ns);
+      ASSERT_LT(t_ns, window.end_ns);
+    }
+    events += span.count;
+    next += span.count;
+  }
+  EXPECT_EQ(events, end - begin);
+}
+
 }  // namespace
 }  // namespace fast_edi

@@ -353,6 +353,31 @@ TEST_F(DeblurBagTool, SaysWhyItCannotWrite) {
   EXPECT_FALSE(fs::exists(output_));
 }
 
+TEST_F(DeblurBagTool, WritesTheSameOnAnyNumberOfThreads) {
+  const std::string demo = std::string(FAST_EDI_SOURCE_DIR) + "/bags/demo.bag";
+  const auto deblurred = [&](const std::string& threads) {
+    const std::string out = directory_.file("out_" + threads);
+    const auto result =
+        run("--in '" + demo + "' --out " + out + ".bag --frames " + out + " --trust " + out +
+            "_trust --compression lz4 --threads " + threads + kThresholds);
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    return out;
+  };
+  const std::string one = deblurred("1");
+  for (const std::string threads : {"2", "4", "64"}) {
+    const std::string more = deblurred(threads);
+    EXPECT_TRUE(contents(more + ".bag") == contents(one + ".bag")) << threads << " threads";
+    for (const std::string folder : {"", "_trust"}) {
+      const auto same = testing::runCommand("diff -r " + one + folder + " " + more + folder);
+      EXPECT_EQ(same.exit_code, 0) << same.output;
+    }
+  }
+  for (const std::string threads : {"0", "65", "-1"}) {
+    EXPECT_THAT(run(paths() + kThresholds + " --threads " + threads).output,
+                HasSubstr("--threads " + threads + ": expected 1..64"));
+  }
+}
+
 TEST_F(DeblurBagTool, ExplainsItself) {
   const auto help = run("--help");
   EXPECT_EQ(help.exit_code, 0);

@@ -3,6 +3,7 @@
 /// record times, at full speed.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <iosfwd>
@@ -64,6 +65,10 @@ class BagDeblurrer {
   /// Outputs shown to the handler have maps of trust.
   void showTrust() { pipeline_.showTrust(); }
 
+  /// On how many threads run() works at a time, 1 by default: same output. With more, what was set
+  /// above is called by other threads than run(), each by one at a time.
+  void setThreads(std::size_t threads);
+
   /// Asks \p requested before each message; once it says yes, run() behaves as at the end of the
   /// bag.
   void setStopRequest(StopRequest requested) { stop_requested_ = std::move(requested); }
@@ -72,11 +77,14 @@ class BagDeblurrer {
   /// and with the same record time. At the end of the bag waiting frames are closed with what has
   /// come. Latent images (`latent_images`) are written to TopicNames::outputLatent().
   /// Does not close the writer.
-  /// \throws BagError when the output cannot be written
+  /// \throws BagError when the output cannot be written, and what was set above throws
   BagDeblurReport run();
 
  private:
-  void writeOutputs(const ros::Time& record_time);
+  void copy(const BagMessage& message);
+  std::vector<BagPipeline::Output> integrate(const BagMessage& message);
+  std::vector<BagPipeline::Output> finish();
+  void write(const BagPipeline::Output& output, const ros::Time& record_time);
 
   MessageSource& reader_;
   BagWriter* const writer_;
@@ -84,9 +92,11 @@ class BagDeblurrer {
   const std::string camera_info_topic_;
   const std::string latent_topic_;
   const bool write_latent_;
+  const FilterParameters filter_;
   const Progress progress_;
   OutputHandler output_handler_;
   StopRequest stop_requested_;
+  std::size_t threads_ = 1;
   BagPipeline pipeline_;
   BagDeblurReport report_;
 };

@@ -27,6 +27,7 @@ class BagPipeline {
     std::vector<sensor_msgs::ImagePtr> latent;  ///< images of the high-rate video behind it
     /// How far filter_reblur trusted each pixel, 0 to 255; null unless showTrust() was called.
     sensor_msgs::ImagePtr trust;
+    FrameWork work;  ///< what is left to do for image and trust, see complete(); else empty
   };
 
   /// \throws std::invalid_argument for parameters out of range
@@ -34,6 +35,11 @@ class BagPipeline {
 
   /// From now on, outputs have maps of trust.
   void showTrust();
+  /// From now on, filters of frames are left to complete() where no later frame depends on them.
+  void deferWork();
+  /// Does the work that is left of an output; on any thread, also while the pipeline goes on.
+  static void complete(Output& output, FrameRenderer& renderer);
+
   /// Takes the next message of the recording, in the order of record times; other topics than ours
   /// only let time pass.
   /// \return false for a message on a topic of ours that contradicts itself: it is not used
@@ -59,6 +65,7 @@ class BagPipeline {
   std::vector<Output> outputs_;
   bool shows_trust_ = false;
   std::vector<std::uint8_t> trust_;  ///< of the image that is being written
+  FrameWork work_;                   ///< the same
   std::int64_t now_ns_ = 0;          ///< the bag's record time
 };
 

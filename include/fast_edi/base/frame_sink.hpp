@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -31,6 +32,13 @@ struct OutputFrame {
   std::uint64_t events = 0;   ///< events inside the exposure
 };
 
+class FrameRenderer;
+
+/// The rest of the work on one frame, the filters: to be done once, on any thread, at any time. It
+/// holds all that it needs but the memory of the frame's output.
+/// \return whether the renderer knows how far it trusted each pixel
+using FrameWork = std::function<bool(FrameRenderer& renderer)>;
+
 /// Receives the output. Called from within the Deblurrer's calls.
 class FrameSink {
  public:
@@ -46,6 +54,12 @@ class FrameSink {
   /// How far filter_reblur trusted each pixel of the image that is being written, 0 to 1,
   /// row-major. Comes between begin() and finish(), of frames that it looked at.
   virtual void noteTrust(const std::vector<float>& trust) { static_cast<void>(trust); }
+
+  /// Whether the sink takes work by defer(): asked for each deblurred frame.
+  virtual bool takesWork() const { return false; }
+  /// Comes between begin() and finish() in place of the image, which is complete when \p work is
+  /// done; of frames that no later frame depends on.
+  virtual void defer(FrameWork work) { static_cast<void>(work); }
 
   /// Whether anybody wants the high-rate video just now. Asked once for each deblurred frame; costs
   /// nothing while it says no.

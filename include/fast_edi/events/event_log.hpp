@@ -52,6 +52,11 @@ class EventLog {
   /// Drops whole chunks that lie before \p t_ns entirely.
   void discardBefore(std::int64_t t_ns);
 
+  /// Makes this log one of the events of another from \p from_ns to \p to_ns, and some around them,
+  /// to read on another thread while that one goes on. Nothing may be appended. Full chunks are
+  /// shared rather than copied; the other log does not write to them again.
+  void share(const EventLog& other, std::int64_t from_ns, std::int64_t to_ns);
+
   /// Whether to keep each event's interval since the one before it in its pixel. Switched on, the
   /// events that are buffered get theirs, too; what came before these is not known.
   void keepIntervals(bool keep);
@@ -110,6 +115,7 @@ class EventLog {
     std::int64_t base_ns = 0;
     std::uint64_t first_sequence = 0;
     std::size_t count = 0;
+    bool is_shared = false;                ///< other logs may read it for as long as it lives
     std::vector<std::uint16_t> intervals;  ///< of the events, once they were kept
     PackedEvent events[kChunkEvents];
 
@@ -122,10 +128,13 @@ class EventLog {
     return !chunks_.empty() && chunks_.back()->count < kChunkEvents &&
            t_ns - chunks_.back()->base_ns <= kMaxDt_ns;
   }
+  static std::shared_ptr<Chunk> copyOf(const Chunk& chunk);
   void makeRoom(std::int64_t t_ns);
   void beginChunk(std::int64_t t_ns);
   void overflow();
   void dropFront();
+  void recycle(std::shared_ptr<Chunk> chunk);
+  void unshare();
   void trim();
   void measureIntervals(Chunk& chunk, std::size_t first, std::size_t count);
   std::size_t chunkIndex(std::uint64_t sequence) const;
@@ -133,8 +142,8 @@ class EventLog {
   std::size_t pixels_ = 0;
   std::size_t max_events_ = 0;
   std::size_t max_chunks_ = 0;
-  std::vector<std::unique_ptr<Chunk>> chunks_;  ///< oldest first, never empty ones
-  std::vector<std::unique_ptr<Chunk>> free_chunks_;
+  std::vector<std::shared_ptr<Chunk>> chunks_;  ///< oldest first, never empty ones
+  std::vector<std::shared_ptr<Chunk>> free_chunks_;
   std::size_t working_set_ = 0;  ///< chunks that were in use at once lately
   std::uint64_t begin_sequence_ = 0;
   std::uint64_t end_sequence_ = 0;

@@ -63,6 +63,9 @@ class PixelEventLists {
 
   /// \throws std::invalid_argument unless 1 <= width, height <= 32767, max_events >= 1, limits > 0
   PixelEventLists(SensorSize size, Limits limits);
+  /// The events of \p window in other lists, and some around them, to read on another thread while
+  /// those go on: see EventLog::share(). Nothing may be appended.
+  PixelEventLists(const PixelEventLists& other, const ExposureInterval& window);
   ~PixelEventLists();
   PixelEventLists(const PixelEventLists&) = delete;
   PixelEventLists& operator=(const PixelEventLists&) = delete;

@@ -55,6 +55,10 @@ class MessageFrameSink : public FrameSink {
   /// Who wants to know how far filter_reblur trusted the pixels of the image that comes next.
   void setTrust(DeliverTrust deliver) { deliver_trust_ = std::move(deliver); }
 
+  /// Who does the work on frames later. Comes before the frame is delivered: its image is complete
+  /// once the work is done.
+  void setDefer(std::function<void(FrameWork work)> defer) { defer_ = std::move(defer); }
+
   /// The calibration for all later frames.
   void setCameraInfo(const sensor_msgs::CameraInfoConstPtr& info) { camera_info_ = info; }
 
@@ -65,6 +69,8 @@ class MessageFrameSink : public FrameSink {
       deliver_trust_(trust);
     }
   }
+  bool takesWork() const override { return defer_ != nullptr; }
+  void defer(FrameWork work) override { defer_(std::move(work)); }
   bool wantsLatentImages() const override { return latent_wanted_ && latent_wanted_(); }
   MutableImageView beginLatent(const InputFrame& input) override { return begin(input); }
   void finishLatent(const InputFrame& input, std::int64_t stamp_ns) override;
@@ -78,6 +84,7 @@ class MessageFrameSink : public FrameSink {
   std::function<bool()> latent_wanted_;
   DeliverLatent deliver_latent_;
   DeliverTrust deliver_trust_;
+  std::function<void(FrameWork work)> defer_;
   sensor_msgs::ImagePtr image_;  ///< between begin() and finish()
 };
 

@@ -1,5 +1,8 @@
 #include "tools/deblur_bag/deblur_bag_arguments.hpp"
 
+#include <algorithm>
+#include <string>
+#include <thread>
 #include <utility>
 
 #include <boost/program_options.hpp>
@@ -12,6 +15,15 @@ namespace fast_edi::deblur_bag {
 namespace {
 
 namespace po = boost::program_options;
+
+constexpr int kMostThreads = 64;
+/// Integrating is done by one thread at a time, and so is writing: more have little to do.
+constexpr int kMostUsefulThreads = 4;
+
+int defaultThreads() {
+  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  return std::clamp(cores, 1, kMostUsefulThreads);
+}
 
 po::options_description describeOptions(Arguments& arguments) {
   TopicNames& topics = arguments.topics;
@@ -47,6 +59,9 @@ po::options_description describeOptions(Arguments& arguments) {
       "namespace of the deblurred topics; by default `deblurred` beside --image")(
       "compression", po::value(&arguments.compression)->default_value("same")->value_name("KIND"),
       "of the output: none, bz2, lz4, or the same as the input's");
+  options.add_options()(
+      "threads", po::value(&arguments.threads)->default_value(defaultThreads())->value_name("N"),
+      "cores to work on at a time; the output is the same for any number");
   tools::addForceOption(options, arguments.overwrite);
   return options;
 }
@@ -108,6 +123,10 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   if (arguments.film_rate_hz < 1 || arguments.film_rate_hz > kMaxLatentRate_hz) {
     throw po::error("--fps " + std::to_string(arguments.film_rate_hz) + ": expected 1.." +
                     std::to_string(kMaxLatentRate_hz));
+  }
+  if (arguments.threads < 1 || arguments.threads > kMostThreads) {
+    throw po::error("--threads " + std::to_string(arguments.threads) + ": expected 1.." +
+                    std::to_string(kMostThreads));
   }
   return true;
 }

@@ -27,6 +27,7 @@ struct Arguments {
   std::string learned;
   std::string save_learned;
   int film_rate_hz = kDefaultFilmRate_hz;
+  int threads = 0;  ///< that work at a time, at least 1 once parsed
 };
 
 /// \return false when help was asked for and given

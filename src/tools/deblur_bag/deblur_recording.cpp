@@ -91,6 +91,7 @@ BagDeblurReport deblur(MessageSource& reader, const Arguments& arguments,
     deblurrer.showTrust();
   }
   deblurrer.setOutputHandler([&](const BagPipeline::Output& output) { outputs.add(output); });
+  deblurrer.setThreads(static_cast<std::size_t>(arguments.threads));
   deblurrer.setStopRequest([] { return interruptingSignal() != 0; });
   return deblurrer.run();
 }

@@ -1,12 +1,14 @@
 #include "tools/deblur_bag/interruption.hpp"
 
+#include <atomic>
 #include <csignal>
 
 namespace fast_edi::deblur_bag {
 namespace {
 
-/// The only thing that a signal's handler may touch.
-volatile std::sig_atomic_t interrupting_signal = 0;
+/// Set by a signal's handler, which may touch nothing that locks; read by other threads.
+std::atomic<int> interrupting_signal{0};
+static_assert(std::atomic<int>::is_always_lock_free);
 
 extern "C" void noteSignal(int signal) {
   interrupting_signal = signal;
