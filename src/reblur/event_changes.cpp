@@ -51,6 +51,26 @@ void subtract(const float* __restrict by, std::size_t count, float* __restrict v
   }
 }
 
+FAST_EDI_VECTOR_CLONES
+void halveRow(const float* __restrict upper, const float* __restrict lower, std::size_t width,
+              float* __restrict out) {
+  constexpr float kQuarter = 0.25F;
+  for (std::size_t x = 0; x < width; ++x) {
+    out[x] = kQuarter * ((upper[2 * x] + upper[2 * x + 1]) + (lower[2 * x] + lower[2 * x + 1]));
+  }
+}
+
+void halve(const std::vector<float>& plane, SensorSize size, std::vector<float>& halved) {
+  const auto width = static_cast<std::size_t>(size.width);
+  const std::size_t half_width = width / 2;
+  const auto half_height = static_cast<std::size_t>(size.height / 2);
+  halved.resize(half_width * half_height);
+  for (std::size_t y = 0; y < half_height; ++y) {
+    const float* upper = plane.data() + 2 * y * width;
+    halveRow(upper, upper + width, half_width, halved.data() + y * half_width);
+  }
+}
+
 }  // namespace
 
 void EventChanges::measure(const PixelEventLists& lists, const ExposureInterval& window,
@@ -64,19 +84,27 @@ void EventChanges::measure(const PixelEventLists& lists, const ExposureInterval&
   sumSteps({counts, quarters.third().data(), quarters.fourth().data()}, Steps(model.thresholds),
            pixels, start.data(), late.data(), end.data());
   const std::uint64_t events = lists.lowerBound(window.end_ns) - lists.lowerBound(window.start_ns);
-  if (events >= kManyEvents * pixels || model.level.isStaircase()) {
-    return;
+  if (events < kManyEvents * pixels && !model.level.isStaircase()) {
+    addBegunSteps(lists, window, model);
   }
+  for (std::size_t k = 0; k < kInstants; ++k) {
+    halve(change_[k], lists.size(), halved_[k]);
+  }
+}
+
+void EventChanges::addBegunSteps(const PixelEventLists& lists, const ExposureInterval& window,
+                                 const LatentGains::Model& model) {
   const RampRises rises(model.level, model.thresholds);
   const auto add_begun = [&](std::int64_t t_ns, std::vector<float>& sum) {
     visitOpenRamps(lists, t_ns, window.end_ns, model.level, [&](const OpenRamp& ramp) {
       sum[ramp.pixel] += static_cast<float>(rises.rise[ramp.on] * ramp.done);
     });
   };
-  middle_.assign(pixels, 0.0F);
+  auto& [start, late, end] = change_;
+  middle_.assign(end.size(), 0.0F);
   add_begun(window.at(ExposureInstant::kMid), middle_);
   for (std::vector<float>& change : change_) {
-    subtract(middle_.data(), pixels, change.data());
+    subtract(middle_.data(), middle_.size(), change.data());
   }
   add_begun(window.start_ns, start);
   add_begun(LaterQuarters::lateInstant(window), late);
@@ -84,8 +112,8 @@ void EventChanges::measure(const PixelEventLists& lists, const ExposureInterval&
 
 std::size_t EventChanges::memoryBytes() const {
   std::size_t floats = middle_.capacity();
-  for (const std::vector<float>& change : change_) {
-    floats += change.capacity();
+  for (std::size_t k = 0; k < kInstants; ++k) {
+    floats += change_[k].capacity() + halved_[k].capacity();
   }
   return floats * sizeof(float);
 }

@@ -41,11 +41,18 @@ class EventChanges {
   /// log L(x, tau) - log L(x, 0) of all pixels, row-major.
   const std::vector<float>& at(std::size_t instant) const { return change_[instant]; }
 
+  /// The same at half the resolution: means over 2 x 2 pixels.
+  const std::vector<float>& halvedAt(std::size_t instant) const { return halved_[instant]; }
+
   std::size_t memoryBytes() const;
 
  private:
+  void addBegunSteps(const PixelEventLists& lists, const ExposureInterval& window,
+                     const LatentGains::Model& model);
+
   std::vector<float> middle_;  ///< scratch: steps that have begun in the middle
   std::array<std::vector<float>, kInstants> change_;
+  std::array<std::vector<float>, kInstants> halved_;
 };
 
 }  // namespace fast_edi

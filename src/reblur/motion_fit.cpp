@@ -111,10 +111,11 @@ float raiseOf(float mean_count) {
 }
 
 FAST_EDI_VECTOR_CLONES
-void raise(const float* __restrict count, std::size_t pixels, float* __restrict change) {
+void raise(const float* __restrict count, const float* __restrict change, std::size_t pixels,
+           float* __restrict raised) {
   for (std::size_t i = 0; i < pixels; ++i) {
     const float n = count[i] * (1.0F / kHalfRaised);
-    change[i] *= 1.0F + kRaise / (1.0F + n * n);
+    raised[i] = change[i] * (1.0F + kRaise / (1.0F + n * n));
   }
 }
 
@@ -265,13 +266,15 @@ void MotionFit::load(const float* log_image, const EventChanges& changes,
   for (std::size_t i = 1; i < kLevels; ++i) {
     const Level& finer = levels_[i - 1];
     Level& level = levels_[i];
-    const bool from_given = i == 1;
     halve(finer.log_image.data(), finer.size, level.log_image);
-    halve(from_given ? mean_counts : finer.count.data(), finer.size, level.count);
+    halve(i == 1 ? mean_counts : finer.count.data(), finer.size, level.count);
     for (std::size_t k = 0; k < kInstants; ++k) {
-      halve((from_given ? changes.at(k) : finer.change[k]).data(), finer.size, level.change[k]);
-      if (from_given) {
-        raise(level.count.data(), level.count.size(), level.change[k].data());
+      if (i == 1) {
+        level.change[k].resize(level.count.size());
+        raise(level.count.data(), changes.halvedAt(k).data(), level.count.size(),
+              level.change[k].data());
+      } else {
+        halve(finer.change[k].data(), finer.size, level.change[k]);
       }
     }
   }

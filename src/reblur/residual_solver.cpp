@@ -138,37 +138,37 @@ struct Sums {
   float squares;  ///< of the product
 };
 
-/// Adds what anchor and likeness of neighbours contribute to the product.
+/// Adds what anchor and likeness of neighbours contribute to the product, a row of whole blocks.
 FAST_EDI_VECTOR_CLONES
-void addPrior(const Prior& prior, const float* __restrict in, std::size_t count, std::size_t stride,
-              float* __restrict out) {
-  const float* __restrict anchor = prior.anchor;
-  const float* __restrict across = prior.across;
-  const float* __restrict across_before = prior.across - 1;
-  const float* __restrict down = prior.down;
-  const float* __restrict down_above = prior.down - stride;
-  const float* __restrict before = in - 1;
-  const float* __restrict above = in - stride;
-  const float* __restrict below = in + stride;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float value = in[i];
-    out[i] += anchor[i] * value +
-              (across[i] * (value - in[i + 1]) + across_before[i] * (value - before[i])) +
-              (down[i] * (value - below[i]) + down_above[i] * (value - above[i]));
-  }
-}
-
-FAST_EDI_VECTOR_CLONES
-Sums sumsOf(const float* direction, const float* product, std::size_t count) {
+Sums addPrior(const Prior& prior, const float* direction, std::size_t count, std::size_t stride,
+              float* product) {
   FloatBlock energy = {};
   FloatBlock squares = {};
   for (std::size_t i = 0; i < count; i += kFloatBlock) {
-    FloatBlock a;
-    FloatBlock b;
-    std::memcpy(&a, direction + i, sizeof(a));
-    std::memcpy(&b, product + i, sizeof(b));
-    energy += a * b;
-    squares += b * b;
+    const float* at = direction + i;
+    FloatBlock value;
+    FloatBlock neighbour;
+    FloatBlock weight;
+    FloatBlock sum;
+    std::memcpy(&value, at, sizeof(value));
+    std::memcpy(&weight, prior.anchor + i, sizeof(weight));
+    std::memcpy(&sum, product + i, sizeof(sum));
+    sum += weight * value;
+    std::memcpy(&weight, prior.across + i, sizeof(weight));
+    std::memcpy(&neighbour, at + 1, sizeof(neighbour));
+    sum += weight * (value - neighbour);
+    std::memcpy(&weight, prior.across + i - 1, sizeof(weight));
+    std::memcpy(&neighbour, at - 1, sizeof(neighbour));
+    sum += weight * (value - neighbour);
+    std::memcpy(&weight, prior.down + i, sizeof(weight));
+    std::memcpy(&neighbour, at + stride, sizeof(neighbour));
+    sum += weight * (value - neighbour);
+    std::memcpy(&weight, prior.down + i - stride, sizeof(weight));
+    std::memcpy(&neighbour, at - stride, sizeof(neighbour));
+    sum += weight * (value - neighbour);
+    std::memcpy(product + i, &sum, sizeof(sum));
+    energy += value * sum;
+    squares += sum * sum;
   }
   return {total(energy), total(squares)};
 }
@@ -256,11 +256,11 @@ void ResidualSolver::advanceRow(const SceneLayout& layout, std::size_t row, cons
 double ResidualSolver::addPriorOfRow(const SceneLayout& layout, std::size_t row, double* squares) {
   const std::size_t stride = layout.sceneStride();
   const std::size_t first = row * stride;
-  if (row > 0 && row + 1 < layout.sceneRows()) {
-    addPrior({anchor_.data() + first, across_.data() + first, down_.data() + first},
-             direction_.data() + first, stride, stride, product_.data() + first);
+  if (row == 0 || row + 1 == layout.sceneRows()) {
+    return 0.0;  // no tap reaches them
   }
-  const Sums sums = sumsOf(direction_.data() + first, product_.data() + first, stride);
+  const Sums sums = addPrior({anchor_.data() + first, across_.data() + first, down_.data() + first},
+                             direction_.data() + first, stride, stride, product_.data() + first);
   *squares += static_cast<double>(sums.squares);
   return static_cast<double>(sums.energy);
 }

@@ -112,9 +112,9 @@ void fromMask(const std::int32_t* __restrict mask, std::size_t count, float* __r
 }
 
 FAST_EDI_VECTOR_CLONES
-void scaleRow(std::size_t count, float factor, float* __restrict row) {
+void scaleRow(const float* __restrict in, std::size_t count, float factor, float* __restrict out) {
   for (std::size_t x = 0; x < count; ++x) {
-    row[x] *= factor;
+    out[x] = factor * in[x];
   }
 }
 
@@ -267,21 +267,18 @@ void TrustMap::fillTaps(const ImageMotion& motion, const ImageMotion::Parts& c, 
 
 void TrustMap::findContradictions(const Input& input) {
   const auto width = static_cast<std::size_t>(half_.size().width);
-  const auto full_width = static_cast<std::size_t>(size_.width);
   could_.assign(half_.imageFloats(), 0);
   does_.assign(half_.imageFloats(), 0);
   row_.assign(half_.stride(), 0.0F);
   taps_.resize(half_.blocks());
   for (std::size_t k = 0; k < EventChanges::kInstants; ++k) {
     const ImageMotion::Parts c = input.motion.at(EventChanges::kTau[k]);
-    const float* change = input.changes.at(k).data();
+    const float* change = input.changes.halvedAt(k).data();
     for (std::size_t y = 0; y < half_.rows(); ++y) {
       if (y % kRowsAlike == 0) {
         fillTaps(input.motion, c, y / kRowsAlike);
       }
-      const float* upper = change + 2 * y * full_width;
-      halveRow(upper, upper + full_width, width, row_.data());
-      scaleRow(width, 1.0F / input.event_share, row_.data());
+      scaleRow(change + y * width, width, 1.0F / input.event_share, row_.data());
       compareRow(
           {log_scene_.data() + half_.inScene(0, y),
            log_scene_.data() + y % kRowsAlike * half_.sceneStride(), half_.sceneStride(),

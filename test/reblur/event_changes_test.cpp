@@ -42,6 +42,13 @@ TEST(EventChangesTest, AreTheLogRatiosOfTheGains) {
     for (std::size_t i = 0; i < gain.size(); ++i) {
       ASSERT_NEAR(changes.at(k)[i], std::log(gain[i]), 1e-4F) << k << ", pixel " << i;
     }
+    const std::size_t width = kSize.width;
+    for (std::size_t i = 0; i < changes.halvedAt(k).size(); ++i) {
+      const float* upper = changes.at(k).data() + i / (width / 2) * 2 * width + i % (width / 2) * 2;
+      const float sum = upper[0] + upper[1] + upper[width] + upper[width + 1];
+      ASSERT_NEAR(changes.halvedAt(k)[i], 0.25F * sum, 1e-4F) << k << ", pixel " << i;
+    }
+    EXPECT_EQ(changes.halvedAt(k).size(), kSize.pixelCount() / 4);
   }
 }
 
