@@ -1,5 +1,6 @@
 #include "pipeline/window_integral.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -120,6 +121,39 @@ TEST_F(WindowIntegralTest, AdoptsThresholdsAndWeighting) {
   ASSERT_TRUE(integral.prepare(events, parameters, true));
   integral.integrate(*events.lists(), kWindow, kMid, kCounted);
   expectReference(kSize);
+}
+
+TEST_F(WindowIntegralTest, CountsTheLaterQuartersOnlyForReblurring) {
+  parameters.filter.enabled = true;
+  EXPECT_EQ(WindowIntegral::countingFor(parameters), WindowIntegral::Counting::kQuarters);
+  parameters.reference = ExposureInstant::kEnd;
+  EXPECT_EQ(WindowIntegral::countingFor(parameters), WindowIntegral::Counting::kWindow);
+  parameters.filter.enabled = false;
+  EXPECT_EQ(WindowIntegral::countingFor(parameters), WindowIntegral::Counting::kNone);
+
+  take(kSize, 1);
+  ASSERT_TRUE(integral.prepare(events, parameters, true));
+  integral.integrate(*events.lists(), kWindow, kMid, kCounted);
+  const std::size_t bytes = integral.memoryBytes();
+  integral.predictWindow({kWindow.start_ns + kMs, kWindow.end_ns + kMs}, kMid + kMs);
+  integral.accumulate(*events.lists(), WindowIntegral::Counting::kQuarters);
+  integral.integrate(*events.lists(), kWindow, kMid, WindowIntegral::Counting::kQuarters);
+  EXPECT_GT(integral.memoryBytes(), bytes);
+  std::size_t third = 0;
+  std::size_t fourth = 0;
+  for (std::size_t i = 0; i < kSize.pixelCount(); ++i) {
+    third += integral.quarters().third().on(i) + integral.quarters().third().off(i);
+    fourth += integral.quarters().fourth().on(i) + integral.quarters().fourth().off(i);
+  }
+  const auto expected = [this](std::int64_t from_ns, std::int64_t to_ns) {
+    return static_cast<std::size_t>(std::count_if(
+        list.begin(), list.end(),
+        [=](const Event& event) { return event.t_ns >= from_ns && event.t_ns < to_ns; }));
+  };
+  EXPECT_EQ(third, expected(20 * kMs, 25 * kMs));
+  EXPECT_EQ(fourth, expected(25 * kMs, 30 * kMs));
+  integral.accumulate(*events.lists(), kCounted);
+  EXPECT_EQ(integral.memoryBytes(), bytes);
 }
 
 }  // namespace
