@@ -14,8 +14,8 @@ namespace {
 constexpr std::array<std::size_t, 3> kMostPixels = {1200, 700, 500};
 constexpr std::size_t kFewestPixels = 60;
 constexpr float kLeastCount = 1.5F;                   ///< of a chosen pixel
-constexpr std::array<int, 3> kMostSteps = {2, 3, 6};  ///< the same
-constexpr double kConverged_px = 0.1;
+constexpr std::array<int, 3> kMostSteps = {3, 3, 6};  ///< the same
+constexpr double kConverged_px = 0.05;
 /// Of the robust weights, in contrast thresholds; the finest level first.
 constexpr std::array<float, 3> kSpread = {6.0F, 3.0F, 2.0F};
 /// Where thresholds are smaller than this, noise of the image decides.
