@@ -13,7 +13,7 @@
 /// Limits. Monochrome frames of a linear camera response whose latent image shows mid-exposure; one
 /// motion for the whole image, of at least 32 x 32 pixels.
 ///
-/// Complexity. O(pixels); memory once used about 130 B per pixel.
+/// Complexity. O(pixels); memory once used about 115 B per pixel.
 #pragma once
 
 #include <memory>
