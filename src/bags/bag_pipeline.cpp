@@ -70,7 +70,7 @@ void BagPipeline::showTrust() {
 }
 
 void BagPipeline::deferWork() {
-  sink_.setDefer([this](FrameWork work) { work_ = std::move(work); });
+  sink_.setDefer([this](const FrameWork& work) { work_ = work; });
 }
 
 void BagPipeline::complete(Output& output, FrameRenderer& renderer) {

@@ -32,7 +32,7 @@ class DeferringSink : public FrameSink {
   void finish(const OutputFrame& output) override { deblurred += output.deblurred ? 1 : 0; }
   void noteTrust(const std::vector<float>& trust) override { images.back().trust = trust; }
   bool takesWork() const override { return takes_work; }
-  void defer(FrameWork work) override { works.emplace_back(images.size() - 1, std::move(work)); }
+  void defer(const FrameWork& work) override { works.emplace_back(images.size() - 1, work); }
 
   bool takes_work = true;
   std::vector<Image> images;

@@ -59,7 +59,7 @@ class FrameSink {
   virtual bool takesWork() const { return false; }
   /// Comes between begin() and finish() in place of the image, which is complete when \p work is
   /// done; of frames that no later frame depends on.
-  virtual void defer(FrameWork work) { static_cast<void>(work); }
+  virtual void defer(const FrameWork& work) { static_cast<void>(work); }
 
   /// Whether anybody wants the high-rate video just now. Asked once for each deblurred frame; costs
   /// nothing while it says no.

@@ -57,7 +57,7 @@ class MessageFrameSink : public FrameSink {
 
   /// Who does the work on frames later. Comes before the frame is delivered: its image is complete
   /// once the work is done.
-  void setDefer(std::function<void(FrameWork work)> defer) { defer_ = std::move(defer); }
+  void setDefer(std::function<void(const FrameWork& work)> defer) { defer_ = std::move(defer); }
 
   /// The calibration for all later frames.
   void setCameraInfo(const sensor_msgs::CameraInfoConstPtr& info) { camera_info_ = info; }
@@ -70,7 +70,7 @@ class MessageFrameSink : public FrameSink {
     }
   }
   bool takesWork() const override { return defer_ != nullptr; }
-  void defer(FrameWork work) override { defer_(std::move(work)); }
+  void defer(const FrameWork& work) override { defer_(work); }
   bool wantsLatentImages() const override { return latent_wanted_ && latent_wanted_(); }
   MutableImageView beginLatent(const InputFrame& input) override { return begin(input); }
   void finishLatent(const InputFrame& input, std::int64_t stamp_ns) override;
@@ -84,7 +84,7 @@ class MessageFrameSink : public FrameSink {
   std::function<bool()> latent_wanted_;
   DeliverLatent deliver_latent_;
   DeliverTrust deliver_trust_;
-  std::function<void(FrameWork work)> defer_;
+  std::function<void(const FrameWork& work)> defer_;
   sensor_msgs::ImagePtr image_;  ///< between begin() and finish()
 };
 
