@@ -101,7 +101,11 @@ class Relay:
     def accept(self):
         while True:
             client, _ = self.listener.accept()
-            server = socket.create_connection(("127.0.0.1", self.server_port))
+            try:
+                server = socket.create_connection(("127.0.0.1", self.server_port))
+            except ConnectionRefusedError:  # it reads its recording first; the client will try again
+                client.close()
+                continue
             with self.lock:
                 self.pairs.append((client, server))
             threading.Thread(target=self.relay, args=(client, server), daemon=True).start()
