@@ -16,6 +16,9 @@
 namespace fast_edi {
 namespace {
 
+/// As many as eight threads are at work on.
+constexpr std::uint32_t kFrames = 8;
+
 struct Result {
   std::string bag;
   std::vector<std::vector<std::uint8_t>> trust;
@@ -26,7 +29,7 @@ class BagDeblurrerThreads : public ::testing::Test {
  protected:
   BagDeblurrerThreads() {
     test::RecordingSettings settings;
-    settings.frames = 12;
+    settings.frames = kFrames;
     settings.event_period_ns = 500;  // several chunks of the log in each exposure
     settings.exposure_ns = 35 * kNanosecondsPerMillisecond;
     settings.array_period_ns = 7 * kNanosecondsPerMillisecond;
@@ -55,8 +58,8 @@ class BagDeblurrerThreads : public ::testing::Test {
 
   void expectTheSame() {
     const Result one = deblur(1);
-    EXPECT_EQ(one.report.counters.frames_deblurred, 12u);
-    for (const std::size_t threads : {2, 3, 8}) {
+    EXPECT_EQ(one.report.counters.frames_deblurred, kFrames);
+    for (const std::size_t threads : {3, 8}) {
       const Result more = deblur(threads);
       EXPECT_TRUE(more.bag == one.bag) << threads << " threads";
       EXPECT_TRUE(more.trust == one.trust) << threads << " threads";

@@ -197,9 +197,10 @@ TEST_P(DeblurStepsOnThreads, EndWhereTheyAreStoppedWhateverWasRead) {
 TEST_P(DeblurStepsOnThreads, ReadNoFurtherAheadThanMemoryAllows) {
   constexpr std::size_t kPerThread = std::size_t{16} << 20;
   constexpr std::size_t kMessage = 1 << 20;
-  Steps steps(500, kMessage);
+  const std::size_t most = 2 * (GetParam() * kPerThread + kMessage);
+  Steps steps(static_cast<std::uint32_t>(most / kMessage * 3 / 2), kMessage);
   steps.onThreads(GetParam());
-  EXPECT_LE(steps.most_under_way, 2 * (GetParam() * kPerThread + kMessage));
+  EXPECT_LE(steps.most_under_way, most);
 }
 
 }  // namespace
