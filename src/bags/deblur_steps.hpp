@@ -47,9 +47,9 @@ void deblurStepByStep(const DeblurSteps& steps);
 ///
 /// Memory beyond that of one thread: messages that were read and messages and images that are to be
 /// written, 16 MiB each for each thread and what one step adds; the filters of each thread; for
-/// each thread two frames that wait to be filtered, with the events of their exposures. \throws
-/// what a step has thrown, the first one. What read() throws comes when everything before it
-///         has been written
+/// each thread two frames that wait to be filtered, with the events of their exposures.
+/// \throws what a step has thrown, the first one. What read() throws comes when everything before
+///         it has been written
 void deblurOnThreads(const DeblurSteps& steps, std::size_t threads);
 
 }  // namespace fast_edi

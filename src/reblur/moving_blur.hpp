@@ -58,8 +58,7 @@ class MovingBlur {
   /// A^T f(A L), row by row.
   /// \param prepare as above
   /// \param change change(row, values): puts f of a row of A L in its place; beyond the image's
-  /// width
-  ///        it must be 0
+  ///        width it must be 0
   /// \param out written: layout().sceneFloats() values
   /// \param finish finish(row): after a row of out was written, for all of them in order
   template <typename Prepare, typename Change, typename Finish>

@@ -2,7 +2,6 @@
 /// `convert_recording`: a recording of any format as a bag, as AEDAT4 or HDF5, or its frames as
 /// pictures.
 
-#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
@@ -23,6 +22,7 @@
 #include "fast_edi/pictures/open_pictures.hpp"
 #include "fast_edi/recording/recording_error.hpp"
 #include "film/frame_folder.hpp"
+#include "interruption.hpp"
 #include "progress_bar.hpp"
 #include "recording_output.hpp"
 
@@ -36,22 +36,6 @@ using tools::kInputIncomplete;
 using tools::kInterrupted;
 
 constexpr double kMaxArray_ms = 1000.0;
-
-/// The signal that asked to stop, 0 before. The only thing that a signal's handler may touch.
-volatile std::sig_atomic_t interrupting_signal = 0;
-
-extern "C" void noteSignal(int signal) {
-  interrupting_signal = signal;
-}
-
-void handleSignals() {
-  struct sigaction stop = {};
-  stop.sa_handler = noteSignal;
-  stop.sa_flags = SA_RESETHAND;  // a second one ends the program at once
-  sigaction(SIGINT, &stop, nullptr);
-  sigaction(SIGTERM, &stop, nullptr);
-  std::signal(SIGXFSZ, SIG_IGN);
-}
 
 struct Arguments {
   std::vector<std::string> inputs;
@@ -152,7 +136,7 @@ Counts forEach(fast_edi::Recording& recording, Use use) {
   Counts counts;
   fast_edi::ProgressBar bar("converting");
   fast_edi::RecordingItem item;
-  while (!(counts.interrupted = interrupting_signal != 0) && recording.next(item)) {
+  while (!(counts.interrupted = tools::interruptingSignal() != 0) && recording.next(item)) {
     count(item, counts);
     use(item);
     bar.update(recording.position(), recording.length());
@@ -172,7 +156,7 @@ int finish(const Arguments& arguments, const Counts& counts,
   tools::printDamage(fast_edi::nameOf(arguments.inputs), damage);
   if (counts.interrupted) {
     std::cerr << "interrupted: the output is complete up to there\n";
-    return kInterrupted + interrupting_signal;
+    return kInterrupted + tools::interruptingSignal();
   }
   return damage.empty() && counts.left_out == 0 ? kDone : kInputIncomplete;
 }
@@ -232,7 +216,7 @@ int toBag(const Arguments& arguments) {
   {
     fast_edi::ProgressBar bar("converting");
     fast_edi::BagMessage message;
-    while (!(interrupted = interrupting_signal != 0) && source->next(message)) {
+    while (!(interrupted = tools::interruptingSignal() != 0) && source->next(message)) {
       writer.copy(message);
       ++messages;
       bar.update(source->position(), source->length());
@@ -243,7 +227,7 @@ int toBag(const Arguments& arguments) {
   tools::printDamage(fast_edi::nameOf(arguments.inputs), source->damage());
   if (interrupted) {
     std::cerr << "interrupted: the output is complete up to there\n";
-    return kInterrupted + interrupting_signal;
+    return kInterrupted + tools::interruptingSignal();
   }
   return source->damage().empty() ? kDone : kInputIncomplete;
 }
@@ -266,7 +250,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  handleSignals();
+  tools::handleSignals();
   return tools::runTool("convert_recording", [argc, argv] {
     Arguments arguments;
     return parseArguments(argc, argv, arguments) ? run(arguments) : kDone;

@@ -2,10 +2,10 @@
 /// `deblur_bag`: a recording in, the same recording with deblurred frames out, or a film of it.
 
 #include "command_line.hpp"
+#include "interruption.hpp"
 #include "tools/deblur_bag/deblur_bag_arguments.hpp"
 #include "tools/deblur_bag/deblur_recording.hpp"
 #include "tools/deblur_bag/deblur_recordings.hpp"
-#include "tools/deblur_bag/interruption.hpp"
 
 namespace {
 
@@ -19,7 +19,7 @@ int run(const deblur_bag::Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  deblur_bag::handleSignals();
+  fast_edi::tools::handleSignals();
   return fast_edi::tools::runTool("deblur_bag", [argc, argv] {
     deblur_bag::Arguments arguments;
     return deblur_bag::parseArguments(argc, argv, arguments) ? run(arguments)

@@ -63,13 +63,12 @@ def simulate(folder, seconds, scale):
 class Server:
     """The vendor's server in a process of its own."""
 
-    def __init__(self, python, recording, processors):
+    def __init__(self, python, recording):
         self.ports = {"events": free_port(), "frames": free_port()}
         self.child = subprocess.Popen(
             [str(word) for word in (python, FOLDER / "paced_server.py", recording, "--events", self.ports["events"],
                                     "--frames", self.ports["frames"])],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-            preexec_fn=lambda: os.sched_setaffinity(0, processors))
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def begin(self):
         self.child.stdin.write("\n")
@@ -215,9 +214,9 @@ def run_on(processors):
     return ("taskset", "-c", ",".join(map(str, sorted(processors))))
 
 
-def vendors_client(python, recording, processors):
+def vendors_client(python, recording):
     """Prints the row of the vendor's own client."""
-    with Server(python, recording, processors) as server:
+    with Server(python, recording) as server:
         with subprocess.Popen([python, FOLDER / "paced_client.py", "--events", str(server.ports["events"]), "--frames",
                                str(server.ports["frames"])], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                               text=True) as client:
@@ -245,7 +244,7 @@ def vendors_client(python, recording, processors):
 
 def latency(python, recording, config, node_processors, log):
     faults = []
-    with Server(python, recording, os.sched_getaffinity(0)) as server:
+    with Server(python, recording) as server:
         arrivals, diagnostics = Arrivals("/dvs/deblurred/image_raw", stamp_us), Diagnostics()
         with Process([*run_on(node_processors), "roslaunch", "fast_edi", "dv_stream.launch", f"config:={config}",
                       f"events_port:={server.ports['events']}", f"frames_port:={server.ports['frames']}",
@@ -277,7 +276,7 @@ def latency(python, recording, config, node_processors, log):
 
 def cuts(python, recording, log):
     faults, gaps = [], []
-    with Server(python, recording, os.sched_getaffinity(0)) as server:
+    with Server(python, recording) as server:
         relays = {kind: Relay(port) for kind, port in server.ports.items()}
         arrivals, diagnostics = Arrivals("/dvs/deblurred/image_raw", stamp_us), Diagnostics()
         with Process(["roslaunch", "fast_edi", "dv_stream.launch", f"events_port:={relays['events'].port}",
@@ -332,7 +331,7 @@ def main():
                 rospy.init_node("live_latency", disable_signals=True, disable_rosout=True)
                 if "latency" in parts:
                     recording = simulate(folder, arguments.seconds, BUSY_SCALE)
-                    vendors_client(arguments.python, recording, processors)
+                    vendors_client(arguments.python, recording)
                     faults += latency(arguments.python, recording, config_with(folder, parameters), node_processors, log)
                 if "cuts" in parts:
                     recording = simulate(folder, CUT_SECONDS, QUIET_SCALE)

@@ -14,9 +14,9 @@
 #include "fast_edi/bags/open_messages.hpp"
 #include "fast_edi/config/learned_file.hpp"
 #include "fast_edi/config/parameters_from_yaml.hpp"
+#include "interruption.hpp"
 #include "progress_bar.hpp"
 #include "tools/deblur_bag/deblur_outputs.hpp"
-#include "tools/deblur_bag/interruption.hpp"
 
 namespace fast_edi::deblur_bag {
 namespace {
@@ -27,7 +27,7 @@ void printInterruption(const MessageSource& reader, const BagDeblurReport& repor
     // Other recordings than bags do not tell how many messages they make.
     const std::string of_all =
         reader.countsMessages() ? " of " + std::to_string(reader.length()) : std::string();
-    std::cerr << "interrupted by " << (interruptingSignal() == SIGINT ? "SIGINT" : "SIGTERM")
+    std::cerr << "interrupted by " << (tools::interruptingSignal() == SIGINT ? "SIGINT" : "SIGTERM")
               << " after " << report.messages << of_all << " messages: "
               << (is_one_of_many ? "there is no output of this recording"
                                  : "the output is closed and ends there")
@@ -92,7 +92,7 @@ BagDeblurReport deblur(MessageSource& reader, const Arguments& arguments,
   }
   deblurrer.setOutputHandler([&](const BagPipeline::Output& output) { outputs.add(output); });
   deblurrer.setThreads(static_cast<std::size_t>(arguments.threads));
-  deblurrer.setStopRequest([] { return interruptingSignal() != 0; });
+  deblurrer.setStopRequest([] { return tools::interruptingSignal() != 0; });
   return deblurrer.run();
 }
 
@@ -124,7 +124,7 @@ RecordingOutcome deblurRecording(const Arguments& arguments) {
   const bool is_whole = outputs.reportLeftOut() && !report.incomplete();
   printInterruption(*reader, report, is_one_of_many);
   if (report.interrupted) {
-    return {report, tools::kInterrupted + interruptingSignal()};
+    return {report, tools::kInterrupted + tools::interruptingSignal()};
   }
   return {report, is_whole ? tools::kDone : tools::kInputIncomplete};
 }

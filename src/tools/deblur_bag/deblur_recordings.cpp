@@ -13,8 +13,8 @@
 #include <boost/program_options.hpp>
 
 #include "command_line.hpp"
+#include "interruption.hpp"
 #include "tools/deblur_bag/deblur_recording.hpp"
-#include "tools/deblur_bag/interruption.hpp"
 
 namespace fast_edi::deblur_bag {
 namespace {
@@ -126,7 +126,7 @@ int deblurRecordings(const Arguments& arguments) {
   const std::vector<std::string> outputs = outputsOf(recordings, arguments.output_folder);
   makeFolder(arguments.output_folder);
   Totals totals;
-  for (std::size_t i = 0; i < recordings.size() && interruptingSignal() == 0; ++i) {
+  for (std::size_t i = 0; i < recordings.size() && tools::interruptingSignal() == 0; ++i) {
     std::cout << (i > 0 ? "\n" : "") << recordings[i] << "\n" << std::flush;
     Arguments one = arguments;
     one.inputs = {recordings[i]};
@@ -143,7 +143,8 @@ int deblurRecordings(const Arguments& arguments) {
   }
   totals.print(recordings.size(),
                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  return interruptingSignal() != 0 ? tools::kInterrupted + interruptingSignal() : totals.exitCode();
+  return tools::interruptingSignal() != 0 ? tools::kInterrupted + tools::interruptingSignal()
+                                          : totals.exitCode();
 }
 
 }  // namespace fast_edi::deblur_bag

@@ -1,9 +1,9 @@
-#include "tools/deblur_bag/interruption.hpp"
+#include "interruption.hpp"
 
 #include <atomic>
 #include <csignal>
 
-namespace fast_edi::deblur_bag {
+namespace fast_edi::tools {
 namespace {
 
 /// Set by a signal's handler, which may touch nothing that locks; read by other threads.
@@ -29,4 +29,4 @@ int interruptingSignal() {
   return interrupting_signal;
 }
 
-}  // namespace fast_edi::deblur_bag
+}  // namespace fast_edi::tools
