@@ -3,9 +3,13 @@
 
     /usr/bin/python3 test/peers/live.py IN.bag [--rate FACTOR] [--tools DIRECTORY] [--python PYTHON]
 
-Starts a ROS master, the node, and `vendor.py serve` by PYTHON (build/peers/bin/python). Prints how long the server took to send and the digest of
-vendor.py: counts and MD5 sums of all events and frames that came over the topics `events`, `image_raw`
-and `exposure`. Ends when as much has come as the bag has, or nothing for 20 s.
+Starts a ROS master, the node, and `vendor.py serve` by PYTHON (build/peers/bin/python). Prints how long the server took
+to send and the digest of vendor.py: counts and MD5 sums of all events and frames that came over the topics `events`,
+`image_raw` and `exposure`. Ends when as much has come as the bag has, or nothing for 20 s. Arrays that are missing by
+their `header.seq` are counted on standard error.
+
+With factor 0 the server sends bursts as fast as it can, and waits after each until this program has it: the node keeps
+100 arrays for a subscriber, and this one, on a busy machine, may be slower than any burst.
 """
 import argparse
 import os
@@ -14,6 +18,7 @@ import signal
 import socket
 import struct
 import subprocess
+import sys
 import threading
 import time
 
@@ -23,6 +28,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = pathlib.Path(__file__).resolve().parent
 SILENCE_S = 20
 START_S = 60
+BURST = 50  # packets; half of what dv_stream_node keeps for a subscriber
 
 
 def free_port():
@@ -39,6 +45,8 @@ class Listener:
         self.digest = Digest()
         self.frames = []
         self.exposures = []
+        self.arrays = 0
+        self.last_seq = -1
         self.last = time.monotonic()
         for topic, receive in (("events", self.take_events), ("image_raw", self.take_frame),
                                ("exposure", self.take_exposure)):
@@ -48,6 +56,8 @@ class Listener:
         with self.lock:
             self.last = time.monotonic()
             self.digest.add_events(*events_of(message._buff)[0])
+            self.arrays += 1
+            (self.last_seq,) = struct.unpack_from("<I", message._buff)
 
     def take_frame(self, message):
         with self.lock:
@@ -66,9 +76,12 @@ class Listener:
             exposure = self.exposures.pop(0)
             self.digest.add_frame(stamp - exposure // 2, exposure, pixels)
 
-    def wait(self, expected):
-        while str(self.digest) != expected and time.monotonic() - self.last < SILENCE_S:
-            time.sleep(0.1)
+    def wait(self, is_all):
+        while not is_all() and time.monotonic() - self.last < SILENCE_S:
+            time.sleep(0.01)
+
+    def missing(self):
+        return self.last_seq + 1 - self.arrays
 
 
 def connect(rospy, node):
@@ -115,14 +128,24 @@ def main():
                                 stderr=subprocess.DEVNULL)
         processes.append(node)
         connect(rospy, node)
+        burst = [] if float(arguments.rate) else ["--burst", str(BURST)]
         server = subprocess.Popen([arguments.python, FOLDER / "vendor.py", "serve", arguments.bag, "--events", events,
-                                   "--frames", frames, "--rate", arguments.rate],
+                                   "--frames", frames, "--rate", arguments.rate, *burst],
                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         processes.append(server)
-        print(server.stdout.readline().strip())
-        listener.last = time.monotonic()
-        listener.wait(expected)
+        for line in server.stdout:
+            listener.last = time.monotonic()
+            if not line.startswith("burst"):
+                print(line.strip())
+                break
+            sent = int(line.split()[1])
+            listener.wait(lambda: listener.digest.events >= sent)
+            server.stdin.write("go on\n")
+            server.stdin.flush()
+        listener.wait(lambda: str(listener.digest) == expected)
         print(listener.digest)
+        if listener.missing():
+            print(f"arrays missing by their header.seq: {listener.missing()}", file=sys.stderr)
         server.stdin.close()
         node.send_signal(signal.SIGINT)
         if node.wait(timeout=START_S) != 0:

@@ -4,14 +4,15 @@
     build/peers/bin/python test/peers/vendor.py write IN.bag OUT.aedat4 [--compression LZ4|ZSTD|NONE]
                                                  [--frames N] [--window WIDTHxHEIGHT]
     build/peers/bin/python test/peers/vendor.py digest FILE
-    build/peers/bin/python test/peers/vendor.py serve IN.bag --events PORT --frames PORT [--rate FACTOR]
+    build/peers/bin/python test/peers/vendor.py serve IN.bag --events PORT --frames PORT [--rate FACTOR] [--burst N]
 
 `write` takes mono8 frames, their exposures and the events of a bag with the driver's topics; N frames
 from the beginning, and of these the upper left window. `digest` prints what is in an AEDAT4 file (read
 by the library) or in a bag: counts, and MD5 sums over (time [us], x, y, polarity) of all events and over
 (exposure start, exposure end, pixels) of all frames. `serve` waits for a client on each port, then sends
 the bag by the library's own server, FACTOR times as fast as recorded (0: as fast as it can), and stays until
-its standard input ends.
+its standard input ends. After each N packets of a burst it prints `burst` and how many events it has sent, and waits for
+a line on its standard input.
 """
 import argparse
 import os
@@ -101,12 +102,17 @@ def serve(arguments):
     while any(writer.getClientCount() == 0 for writer in writers.values()):
         time.sleep(0.01)
     begin, first = time.monotonic(), prepared[0][0]
-    for t, kind, item in prepared:
+    events = 0
+    for number, (t, kind, item) in enumerate(prepared):
+        if arguments.burst and number and number % arguments.burst == 0:
+            print("burst", events, flush=True)
+            sys.stdin.readline()
         wait = (t - first) * 1e-6 / arguments.rate - (time.monotonic() - begin) if arguments.rate else 0
         if wait > 0:
             time.sleep(wait)
         if kind == "events":
             writers[kind].writeEvents(item)
+            events += len(item)
         else:
             writers[kind].writeFrame(item)
     print(f"sent in {time.monotonic() - begin:.3f} s", flush=True)
@@ -149,6 +155,7 @@ def main():
     command.add_argument("--events", type=int, required=True, metavar="PORT")
     command.add_argument("--frames", type=int, required=True, metavar="PORT")
     command.add_argument("--rate", type=float, default=1.0, metavar="FACTOR")
+    command.add_argument("--burst", type=int, metavar="N")
     arguments = parser.parse_args()
     if arguments.command == "write":
         write(arguments)
