@@ -15,6 +15,9 @@ constexpr std::size_t kBlockEvents = 128;  // stays in the first-level cache bet
 /// After an irregular one, blocks begin small: where irregular records come again and again, blocks
 /// that turn out to hold one cost little.
 constexpr std::size_t kSmallestBlock = 2 * kWireBlockStride;
+/// The more blocks in a row were not regular, the more records are taken one by one before the next
+/// one, up to this many: where no block is regular, trying them costs next to nothing.
+constexpr std::size_t kMostOneByOne = kBlockEvents;
 
 std::int64_t wireSecond(const std::uint8_t* record, std::uint32_t& second) {
   const Event event = decodeWireEvent(record);
@@ -50,6 +53,8 @@ void PixelEventLists::reset(SensorSize size, Limits limits) {
   }
   has_newest_ = false;
   block_events_ = kBlockEvents;
+  one_by_one_ = 0;
+  distrust_ = 0;
   size_ = size;
   limits_ = limits;
   log_.reset(size.pixelCount(), limits.max_events);
@@ -64,18 +69,22 @@ AppendResult PixelEventLists::append(const WireEvents& events) {
   AppendResult result;
   while (result.consumed < events.count) {
     const WireEvents rest = events.from(result.consumed);
-    const std::size_t block = block_events_;
-    const std::size_t regular = appendRegular(rest, result);
-    result.consumed += regular;
-    result.accepted += regular;
-    if (regular > 0) {
-      continue;
+    if (one_by_one_ == 0) {
+      const std::size_t regular = appendRegular(rest, result);
+      if (regular > 0) {
+        result.consumed += regular;
+        result.accepted += regular;
+        continue;
+      }
     }
-    const std::size_t one_by_one = std::min(rest.count, block);
-    for (std::size_t i = 0; i < one_by_one; ++i) {
+    one_by_one_ = std::min(rest.count, one_by_one_);
+    for (std::size_t i = 0; one_by_one_ > 0; ++i) {
+      --one_by_one_;
       ++result.read;
       result.stop = appendOne(decodeWireEvent(rest.record(i)), result);
       if (result.stop != AppendStop::kNone) {
+        // Found what was irregular: what follows may be regular again.
+        one_by_one_ = std::min(one_by_one_, distrust_);
         return result;
       }
     }
@@ -89,8 +98,10 @@ AppendResult PixelEventLists::append(const Event& event) {
   return result;
 }
 
-/// Takes in a block if all of its records are regular; returns how many that were.
+/// Takes in a block if all of its records are regular; returns how many that were. If none, it sets
+/// how many to take one by one.
 std::size_t PixelEventLists::appendRegular(const WireEvents& events, AppendResult& result) {
+  one_by_one_ = block_events_;
   // The last record of an array has nothing behind it that could be read along.
   const std::size_t readable = events.count > 0 ? events.count - 1 : 0;
   if (readable < kWireBlockStride || log_.empty() || !has_newest_) {
@@ -114,16 +125,17 @@ std::size_t PixelEventLists::appendRegular(const WireEvents& events, AppendResul
   block.second_dt_ns = static_cast<std::int32_t>(second_dt);
   block.previous_dt_ns = static_cast<std::int32_t>(newest_dt);
   result.read += count;
-  if (!unpackRegularBlock(events.data, count, block, tail.events)) {
-    block_events_ = kSmallestBlock;
-    return 0;
-  }
+  const bool regular = unpackRegularBlock(events.data, count, block, tail.events);
   const std::int64_t block_newest_ns = tail.base_ns + tail.events[count - 1].dt_ns;
-  if (block_newest_ns - newest_ns_ > limits_.max_forward_jump_ns) {
+  if (!regular || block_newest_ns - newest_ns_ > limits_.max_forward_jump_ns) {
     block_events_ = kSmallestBlock;
+    one_by_one_ = std::max(one_by_one_, distrust_);
+    distrust_ = std::clamp(2 * distrust_, kSmallestBlock, kMostOneByOne);
     return 0;
   }
   block_events_ = std::min(2 * block_events_, kBlockEvents);
+  one_by_one_ = 0;
+  distrust_ = 0;
   log_.extend(count);
   newest_ns_ = block_newest_ns;
   return count;

@@ -222,6 +222,52 @@ TEST(PixelEventLists, TakesStepsUpToTheJumpLimits) {
   EXPECT_EQ(lists.append(Event{0, 0, kStart + 10 * kSecond - 500 * kMillisecond, true}).late, 1u);
 }
 
+/// Appends all records, skipping those that jump. \return records read
+std::size_t readsOfAll(PixelEventLists& lists, const std::vector<Event>& events) {
+  const std::vector<std::uint8_t> wire = toWire(events);
+  WireEvents rest = wireView(wire);
+  std::size_t read = 0;
+  while (!rest.empty()) {
+    const AppendResult result = lists.append(rest);
+    read += result.read;
+    rest = rest.from(result.consumed + (result.stop == AppendStop::kNone ? 0 : 1));
+  }
+  return read;
+}
+
+/// Blocks of regular records are tried. One that turns out not to be regular was read in vain.
+TEST(PixelEventLists, ReadsNextToNothingTwiceWhereNoBlockIsRegular) {
+  constexpr std::size_t kCount = 10'000;
+  for (const std::int64_t back_ns : {kMillisecond, kSecond}) {  // late, and too late
+    PixelEventLists lists(kSize, {});
+    std::vector<Event> events = uniformEvents(kCount, kStart, 100 * kMillisecond);
+    std::vector<Event> kept;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      if (i % 2 == 0) {
+        kept.push_back(events[i]);
+      } else {
+        events[i].t_ns -= back_ns;
+      }
+    }
+    EXPECT_LE(readsOfAll(lists, events), kCount + kCount / 8) << back_ns;
+    EXPECT_EQ(contents(lists), kept) << back_ns;
+  }
+}
+
+TEST(PixelEventLists, ReadsWholeBlocksAgainSoonAfterAnIrregularRecord) {
+  constexpr std::size_t kCount = 10'000;
+  constexpr std::size_t kBetweenStrays = 1'000;
+  constexpr std::size_t kMostInVain = 128;  ///< a block
+  PixelEventLists lists(kSize, {});
+  std::vector<Event> events = uniformEvents(kCount, kStart, 100 * kMillisecond);
+  for (std::size_t i = kBetweenStrays; i < kCount; i += kBetweenStrays) {
+    events[i].t_ns += 20 * kSecond;
+  }
+  const std::size_t strays = kCount / kBetweenStrays - 1;
+  EXPECT_LE(readsOfAll(lists, events), kCount + strays * kMostInVain);
+  EXPECT_EQ(lists.eventCount(), kCount - strays);
+}
+
 TEST(PixelEventLists, FindsTheFirstEventNotBeforeATime) {
   const std::vector<Event> events = uniformEvents(150'000, kStart, 40 * kMillisecond);
   PixelEventLists lists(kSize, {});

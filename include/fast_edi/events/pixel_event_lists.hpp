@@ -124,6 +124,8 @@ class PixelEventLists {
   SensorSize size_;
   Limits limits_;
   std::size_t block_events_ = 0;  ///< records of the next block that is taken to be regular
+  std::size_t one_by_one_ = 0;    ///< records to take one by one before that
+  std::size_t distrust_ = 0;      ///< records; grows with each block that was not regular
   std::int64_t newest_ns_ = 0;
   bool has_newest_ = false;
   EventLog log_;
