@@ -4,6 +4,8 @@
 
 #include <boost/make_shared.hpp>
 
+#include "node/poll_thread.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -23,6 +25,11 @@ class Work : public ros::CallbackInterface {
 };
 
 }  // namespace
+
+CallbackThread::~CallbackThread() {
+  stop();
+  waitForPollThread();
+}
 
 ros::NodeHandle CallbackThread::handle(const ros::NodeHandle& nh) {
   ros::NodeHandle own(nh);

@@ -16,15 +16,15 @@ namespace fast_edi {
 /// One thread that calls the callbacks of one queue, in order. Here: requests to change parameters,
 /// subscribers of the outputs that come and go, and what calls the ROS master.
 ///
-/// Why the latter need it: roscpp queues the callback for a new subscriber without looking whether
-/// its publisher is just ending (Publication::peerConnect takes no lock), so it may be queued after
-/// the publisher is gone, and image_transport's callback then works on freed memory. With this
-/// class: stop() first, end the publishers then; what is still queued is never called.
+/// Why the latter need it: a publisher's end does not wait for its callback that is at work, and
+/// image_transport's then works on freed memory. The same holds for services. With this class:
+/// stop() first, end publishers and services then; what is still queued is never called.
 class CallbackThread {
  public:
   CallbackThread() = default;
-  /// Waits for a callback at work: the caller must hold no lock that this may want.
-  ~CallbackThread() { stop(); }
+  /// Waits for a callback at work, and for roscpp, which may be about to queue one: the caller must
+  /// hold no lock that these may want.
+  ~CallbackThread();
   CallbackThread(const CallbackThread&) = delete;
   CallbackThread& operator=(const CallbackThread&) = delete;
 

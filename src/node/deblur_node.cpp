@@ -62,8 +62,7 @@ void DeblurNode::start() {
     callback_thread_.post([this] { updateInputs(); });
     callback_thread_.start();
   }
-  report_timer_ =
-      nh_.createSteadyTimer(kReportPeriod, [this](const ros::SteadyTimerEvent&) { report(); });
+  reporting_.emplace(nh_, kReportPeriod, [this] { report(); });
 }
 
 DeblurNode::~DeblurNode() {
@@ -77,7 +76,7 @@ DeblurNode::~DeblurNode() {
     ended = std::move(inputs_);
   }
   ended.reset();
-  report_timer_.stop();
+  reporting_.reset();
   outputs_.shutdown();
 }
 

@@ -10,7 +10,6 @@
 #include <string>
 
 #include <ros/node_handle.h>
-#include <ros/steady_timer.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <std_msgs/Int32.h>
@@ -23,6 +22,7 @@
 #include "node/node_outputs.hpp"
 #include "node/node_report.hpp"
 #include "node/parameters_in_force.hpp"
+#include "node/periodic_callback.hpp"
 #include "node/reconfigure_server.hpp"
 
 namespace fast_edi {
@@ -47,8 +47,8 @@ namespace fast_edi {
 ///
 /// Order of locks: that of ReconfigureServer, mutex_, then any lock inside ROS (publishing,
 /// diagnostics) or of EventSubscription, WaitingArrays and CallbackThread. The CallbackThread is
-/// stopped without mutex_. What waits for callbacks to end (ending subscriptions, timers and
-/// publishers) is done without mutex_, since such a callback may be waiting for it.
+/// stopped without mutex_. What waits for callbacks to end (ending subscriptions and
+/// PeriodicCallbacks) is done without mutex_, since such a callback may be waiting for it.
 ///
 /// Starting. What can fail comes before what calls back; when it fails, the destructor runs.
 ///
@@ -121,7 +121,7 @@ class DeblurNode {
   std::unique_ptr<Deblurrer> deblurrer_;  ///< null when idle for good
   NodeOutputs outputs_;
   Callback callback_;
-  ros::SteadyTimer report_timer_;
+  std::optional<PeriodicCallback> reporting_;
   /// Null while nobody listens; exchanged by the CallbackThread alone.
   std::unique_ptr<NodeInputs> inputs_;
   std::unique_ptr<ReconfigureServer> reconfigure_server_;  ///< none when idle for good

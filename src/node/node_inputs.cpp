@@ -60,8 +60,7 @@ void NodeInputs::update() {
         "image_raw", kImageQueue, handlers_.image, ros::VoidPtr(),
         image_transport::TransportHints("raw", no_delay, private_nh_));
   }
-  timer_ = nh_.createSteadyTimer(kTickPeriod,
-                                 [this](const ros::SteadyTimerEvent&) { handlers_.tick(); });
+  clock_.emplace(nh_, kTickPeriod, handlers_.tick);
   subscribed_ = true;
 }
 

@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include <dynamic_reconfigure/Config.h>
 #include <image_transport/image_transport.h>
 #include <ros/node_handle.h>
-#include <ros/steady_timer.h>
 #include <ros/subscriber.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
@@ -21,6 +21,7 @@
 #include "fast_edi/events/sequence_gaps.hpp"
 #include "node/event_subscription.hpp"
 #include "node/overload_guard.hpp"
+#include "node/periodic_callback.hpp"
 
 namespace fast_edi {
 
@@ -71,7 +72,7 @@ class NodeInputs {
   // Of update() alone:
   ros::NodeHandle nh_;
   ros::NodeHandle private_nh_;
-  ros::SteadyTimer timer_;
+  std::optional<PeriodicCallback> clock_;
   image_transport::Subscriber image_;
   ros::Subscriber camera_info_;
   ros::Subscriber exposure_;

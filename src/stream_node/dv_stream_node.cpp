@@ -37,13 +37,10 @@ DvStreamNode::DvStreamNode(const ros::NodeHandle& nh, const ros::NodeHandle& pri
                           << " was refused:\n"
                           << error.what());
   }
-  report_timer_ =
-      nh_.createSteadyTimer(kReportPeriod, [this](const ros::SteadyTimerEvent&) { report(); });
+  reporting_.emplace(nh_, kReportPeriod, [this] { report(); });
 }
 
-DvStreamNode::~DvStreamNode() {
-  report_timer_.stop();  // which looks at the clients
-}
+DvStreamNode::~DvStreamNode() = default;
 
 void DvStreamNode::configure() {
   const DvStreamParameters parameters = dvStreamParametersFromYaml(privateParameters(private_nh_));

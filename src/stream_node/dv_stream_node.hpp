@@ -4,13 +4,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <ros/node_handle.h>
-#include <ros/steady_timer.h>
 
 #include "fast_edi/config/dv_stream_parameters.hpp"
+#include "node/periodic_callback.hpp"
 #include "node/report_publisher.hpp"
 #include "stream/stream_client.hpp"
 #include "stream_node/event_output.hpp"
@@ -56,7 +57,7 @@ class DvStreamNode {
   std::unique_ptr<ImuOutput> imu_;
   std::unique_ptr<TriggerOutput> triggers_;
   std::vector<std::unique_ptr<StreamClient>> clients_;  ///< ended before the outputs
-  ros::SteadyTimer report_timer_;
+  std::optional<PeriodicCallback> reporting_;  ///< ended before the clients that it looks at
 };
 
 }  // namespace fast_edi

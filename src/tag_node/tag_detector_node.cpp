@@ -31,14 +31,13 @@ TagDetectorNode::TagDetectorNode(const ros::NodeHandle& nh, const ros::NodeHandl
       inputs_ = subscribe();
     }
   }
-  report_timer_ =
-      nh_.createSteadyTimer(kReportPeriod, [this](const ros::SteadyTimerEvent&) { report(); });
+  reporting_.emplace(nh_, kReportPeriod, [this] { report(); });
   callback_thread_.start();
 }
 
 TagDetectorNode::~TagDetectorNode() {
   callback_thread_.stop();
-  report_timer_.stop();  // which looks at the inputs
+  reporting_.reset();  // which looks at the inputs
   inputs_.reset();
   outputs_.shutdown();
 }

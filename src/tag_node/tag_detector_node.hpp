@@ -11,13 +11,13 @@
 #include <vector>
 
 #include <ros/node_handle.h>
-#include <ros/steady_timer.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 
 #include "fast_edi/config/tag_detector_parameters.hpp"
 #include "fast_edi/tags/tag_detector.hpp"
 #include "node/callback_thread.hpp"
+#include "node/periodic_callback.hpp"
 #include "tag_node/tag_inputs.hpp"
 #include "tag_node/tag_outputs.hpp"
 #include "tag_node/tag_report.hpp"
@@ -65,7 +65,7 @@ class TagDetectorNode {
   sensor_msgs::CameraInfoConstPtr camera_info_;
   TagOutputs outputs_;
   std::int64_t callback_start_ns_ = 0;
-  ros::SteadyTimer report_timer_;
+  std::optional<PeriodicCallback> reporting_;
   std::unique_ptr<TagInputs> inputs_;  ///< null while nobody listens
 };
 

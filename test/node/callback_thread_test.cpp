@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <memory>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include <ros/node_handle.h>
 #include <boost/make_shared.hpp>
 
+#include "node/blocked_poll_thread.hpp"
 #include "rostest/ros_process.hpp"
 
 namespace fast_edi {
@@ -136,6 +138,26 @@ TEST_F(CallbackThreadTest, StoppingWaitsForTheCallbackAtWork) {
   });
   end.set_value();
   stopper.join();
+}
+
+/// A request for a service that has just ended may still be on its way to the queue.
+TEST_F(CallbackThreadTest, TheQueueOutlivesWhatRoscppIsAboutToQueue) {
+  test::requireRos();
+  auto thread = std::make_unique<CallbackThread>();
+  thread->start();
+  ros::CallbackQueueInterface& queue = thread->queue();
+  test::BlockedPollThread poll_thread;
+  std::promise<void> queued;
+  const std::future<void> destruction =
+      std::async(std::launch::async, [&thread] { thread.reset(); });
+  EXPECT_EQ(destruction.wait_for(std::chrono::milliseconds(100)), std::future_status::timeout);
+  poll_thread.finish([&] {
+    queue.addCallback(boost::make_shared<Call>(calls_), 1);
+    queued.set_value();
+  });
+  queued.get_future().wait();
+  destruction.wait();
+  EXPECT_EQ(calls_.count, 0);
 }
 
 TEST_F(CallbackThreadTest, NothingIsCalledAfterStopping) {

@@ -3,7 +3,10 @@
 #include "node/node_inputs.hpp"
 
 #include <atomic>
+#include <chrono>
+#include <future>
 #include <memory>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <ros/callback_queue.h>
@@ -86,6 +89,29 @@ TEST_F(NodeInputsTest, TheDestructorWaitsForCallbacksAndEndsThem) {
   const int ticks = counts_.ticks;
   ros::WallDuration(0.02).sleep();  // five periods of the clock
   EXPECT_EQ(counts_.ticks, ticks);
+}
+
+TEST_F(NodeInputsTest, TheDestructorWaitsForTheClocksCallAtWork) {
+  std::promise<void> begun;
+  std::promise<void> end;
+  std::atomic<bool> ended{false};
+  NodeInputs::Handlers blocking = handlers();
+  blocking.tick = [&, first = true]() mutable {
+    if (std::exchange(first, false)) {
+      begun.set_value();
+      end.get_future().wait();
+      ended = true;
+    }
+  };
+  inputs_ = std::make_unique<NodeInputs>(nh_, ros::NodeHandle(kNamespace + "/node"), kMaxWaiting,
+                                         std::move(blocking));
+  inputs_->update();
+  begun.get_future().wait();
+  const std::future<void> destruction = std::async(std::launch::async, [this] { inputs_.reset(); });
+  EXPECT_EQ(destruction.wait_for(std::chrono::milliseconds(100)), std::future_status::timeout);
+  end.set_value();
+  destruction.wait();
+  EXPECT_TRUE(ended);
 }
 
 TEST_F(NodeInputsTest, CountsFramesThatAreMissing) {
