@@ -2,26 +2,23 @@
 //!
 //!     davis_edi_rs_frames FOLDER FILE.aedat4 CONTRAST|searched OUT_FOLDER
 //!
-//! Writes OUT_FOLDER/START.pgm for each frame, START in microseconds, and prints one line for it: start,
+//! Writes OUT_FOLDER/START.png for each frame, START in microseconds, and prints one line for it: start,
 //! contrast threshold, seconds. The library leaves out the first frame and the last one.
 
 use davis_edi_rs::util::reconstructor::Reconstructor;
-use opencv::core::Mat;
+use opencv::core::{Mat, Vector, CV_8U};
+use opencv::imgcodecs;
 use opencv::prelude::*;
 use std::error::Error;
-use std::io::Write;
 use std::time::Instant;
 
 /// 0 and 1 to 0 and 255 DN; the library cuts off at 1.1.
-fn write_pgm(path: &str, image: &Mat) -> Result<(), Box<dyn Error>> {
-    let mut file = std::fs::File::create(path)?;
-    write!(file, "P5\n{} {}\n255\n", image.cols(), image.rows())?;
-    let pixels: Vec<u8> = image
-        .data_typed::<f64>()?
-        .iter()
-        .map(|value| (value * 255.0).round().clamp(0.0, 255.0) as u8)
-        .collect();
-    file.write_all(&pixels)?;
+fn write_png(path: &str, image: &Mat) -> Result<(), Box<dyn Error>> {
+    let mut bytes = Mat::default();
+    image.convert_to(&mut bytes, CV_8U, 255.0, 0.0)?;
+    if !imgcodecs::imwrite(path, &bytes, &Vector::new())? {
+        return Err(format!("{path} could not be written").into());
+    }
     Ok(())
 }
 
@@ -59,7 +56,7 @@ async fn main() -> Result<(), Box<dyn Error>> {
         let (image, _, details, _) = result.map_err(|error| error.to_string())?;
         let seconds = begun.elapsed().as_secs_f64();
         let (found, _, _, start_us, _) = details.ok_or("a frame without its exposure")?;
-        write_pgm(&format!("{out}/{start_us}.pgm"), &image)?;
+        write_png(&format!("{out}/{start_us}.png"), &image)?;
         println!("\nframe {start_us} {found} {seconds}");
     }
 }
