@@ -1,4 +1,4 @@
-#include "fast_edi/calibration/online_calibration.hpp"
+#include "calibration/online_calibration.hpp"
 
 #include <algorithm>
 #include <array>
@@ -73,15 +73,6 @@ std::uint64_t eventsIn(const PixelEventLists& lists, const ExposureInterval& int
   return lists.lowerBound(interval.end_ns) - lists.lowerBound(interval.start_ns);
 }
 
-/// Of events in the order of time, so that the next ones' pixels come into the cache in time.
-constexpr std::size_t kPrefetchDistance = 24;
-
-/// Of a pair: 0 within the first exposure, 1 between both, 2 within the second.
-std::size_t phaseOf(std::int64_t t_ns, const ExposureInterval& first,
-                    const ExposureInterval& second) {
-  return t_ns < first.end_ns ? 0 : t_ns < second.start_ns ? 1 : 2;
-}
-
 /// True when the time between two exposures holds (almost) no events although they do.
 bool isHole(const PixelEventLists& lists, const ExposureInterval& first,
             const ExposureInterval& second) {
@@ -130,13 +121,13 @@ OnlineCalibration::OnlineCalibration(SensorSize size, const Calibration& given, 
       settings_(settings),
       in_force_(given),
       log_latent_(size.pixelCount()),
-      evidence_(size.pixelCount()) {
+      evidence_(size) {
   previous_.log_latent.resize(size.pixelCount());
 }
 
 std::size_t OnlineCalibration::memoryBytes() const {
   return (log_latent_.capacity() + previous_.log_latent.capacity()) * sizeof(float) +
-         evidence_.capacity() * sizeof(PixelEvidence);
+         evidence_.memoryBytes();
 }
 
 std::int64_t OnlineCalibration::neededFrom() const {
@@ -150,24 +141,8 @@ CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraR
   const Calibration before = in_force_;
   CalibrationOutcome outcome = CalibrationOutcome::kNoPair;
   if (previous_.usable && frame.window.start_ns >= previous_.window.end_ns) {
-    if (isHole(lists, previous_.window, frame.window)) {
-      outcome = CalibrationOutcome::kNoEventsBetween;
-    } else {
-      const Band band = gather(frame, lists);
-      NormalEquations pair;
-      Agreement agreement;
-      outcome = CalibrationOutcome::kTooFewPixels;
-      const bool is_enough = fit(band, pair, agreement) >= kLeastPixels;
-      if (is_enough && !(agreement.cosine() >= kLeastAgreement)) {
-        outcome = CalibrationOutcome::kContradiction;
-      } else if (is_enough) {
-        learned_.matrix = kForgetting * learned_.matrix + pair.matrix;
-        learned_.vector = kForgetting * learned_.vector + pair.vector;
-        updateInForce();
-        ++fits_;
-        outcome = CalibrationOutcome::kFitted;
-      }
-    }
+    outcome = isHole(lists, previous_.window, frame.window) ? CalibrationOutcome::kNoEventsBetween
+                                                            : learnFromPair(frame, lists);
   }
   previous_.log_latent.swap(log_latent_);
   previous_.window = frame.window;
@@ -182,6 +157,28 @@ CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraR
   previous_.usable = resting_ == 0 && in_force_.thresholds == before.thresholds &&
                      in_force_.event_delay_ns == before.event_delay_ns;
   return outcome;
+}
+
+CalibrationOutcome OnlineCalibration::learnFromPair(const Frame& frame,
+                                                    const PixelEventLists& lists) {
+  const ExposurePair exposures{previous_.window, frame.window, previous_.reference_ns,
+                               frame.reference_ns};
+  const RowSample rows = nextRows(lists.lowerBound(exposures.second.end_ns) -
+                                  lists.lowerBound(exposures.first.start_ns));
+  evidence_.gather(lists, exposures, in_force_.thresholds, settings_.level, rows);
+  NormalEquations pair;
+  Agreement agreement;
+  if (fit(rows, pair, agreement) < kLeastPixels) {
+    return CalibrationOutcome::kTooFewPixels;
+  }
+  if (!(agreement.cosine() >= kLeastAgreement)) {
+    return CalibrationOutcome::kContradiction;
+  }
+  learned_.matrix = kForgetting * learned_.matrix + pair.matrix;
+  learned_.vector = kForgetting * learned_.vector + pair.vector;
+  updateInForce();
+  ++fits_;
+  return CalibrationOutcome::kFitted;
 }
 
 void OnlineCalibration::skipFrame() {
@@ -207,85 +204,14 @@ void OnlineCalibration::loadLogLatent(const Frame& frame, const CameraResponse& 
   }
 }
 
-/// All pixels, or as many rows as hold about Settings::most_events of the pair's events; then what
-/// it costs to go through all of them is spread over as many frames.
-OnlineCalibration::Band OnlineCalibration::nextBand(std::uint64_t events) {
-  const auto width = static_cast<std::size_t>(size_.width);
-  if (events <= settings_.most_events) {
-    return {0, size_.pixelCount()};
-  }
-  resting_ = static_cast<int>(events / settings_.most_events);
-  const auto height = static_cast<std::uint64_t>(size_.height);
-  const int rows = std::max(1, static_cast<int>(height * settings_.most_events / events));
-  if (next_row_ + rows > size_.height) {
-    next_row_ = 0;
-  }
-  const Band band{static_cast<std::size_t>(next_row_) * width,
-                  static_cast<std::size_t>(rows) * width};
-  next_row_ += rows;
-  return band;
-}
-
-/// Sums up what the events of the pair say about the pixels of a band.
-OnlineCalibration::Band OnlineCalibration::gather(const Frame& frame,
-                                                  const PixelEventLists& lists) {
-  const ExposureInterval& first = previous_.window;
-  const ExposureInterval& second = frame.window;
-  constexpr auto kNsPerMs = static_cast<float>(kNanosecondsPerMillisecond);
-  // By phase: within the first exposure, between both, within the second.
-  const float rate[3] = {1.0F / static_cast<float>(first.length()), 0.0F,
-                         -1.0F / static_cast<float>(second.length())};
-  const std::int64_t origin_ns[3] = {first.start_ns, 0, second.end_ns};
-  const float constant[3] = {0.0F, 1.0F, 0.0F};
-  const float step[2] = {static_cast<float>(in_force_.thresholds.step(false)),
-                         static_cast<float>(in_force_.thresholds.step(true))};
-  float slope[3][2];  // by phase and polarity
-  for (std::size_t phase = 0; phase < 3; ++phase) {
-    for (std::size_t on = 0; on < 2; ++on) {
-      slope[phase][on] = -step[on] * rate[phase] * kNsPerMs;
-    }
-  }
-  const LevelModel& level = settings_.level;
-  const bool has_ramps = !level.isStaircase();
-  const LevelInstant first_reference{previous_.reference_ns, first.end_ns};
-  const LevelInstant second_reference{frame.reference_ns, second.end_ns};
-  const auto mean_lead = static_cast<float>(0.5 * level.fraction);
-  const std::uint64_t begin = lists.lowerBound(first.start_ns);
-  const std::uint64_t end = lists.lowerBound(second.end_ns);
-  const Band band = nextBand(end - begin);
-  std::fill_n(evidence_.begin(), band.pixels, PixelEvidence{});
-  const auto first_pixel = static_cast<std::uint32_t>(band.first_pixel);
-  for (std::uint64_t sequence = begin; sequence < end;) {
-    const PackedEventSpan span = lists.span(sequence, end);
-    for (std::size_t i = 0; i < span.count; ++i) {
-      const PackedEvent& coming = span.data[std::min(i + kPrefetchDistance, span.count - 1)];
-      __builtin_prefetch(
-          evidence_.data() + std::min<std::size_t>((coming.code >> 1) - first_pixel, band.pixels),
-          1);
-      const std::uint32_t in_band = (span.data[i].code >> 1) - first_pixel;
-      if (in_band >= band.pixels) {
-        continue;
-      }
-      const std::int64_t t_ns = span.base_ns + static_cast<std::int64_t>(span.data[i].dt_ns);
-      const std::uint16_t ticks = has_ramps ? span.intervals[i] : std::uint16_t{0};
-      const std::uint32_t on = span.data[i].code & 1u;
-      PixelEvidence& pixel = evidence_[in_band];
-      const std::int64_t mean_ns =
-          t_ns - static_cast<std::int64_t>(mean_lead * static_cast<float>(level.rampBefore(ticks)));
-      const std::size_t phase = phaseOf(mean_ns, first, second);
-      const float weight = std::max(
-          0.0F, static_cast<float>(mean_ns - origin_ns[phase]) * rate[phase] + constant[phase]);
-      pixel.weight[on] += weight;
-      pixel.slope += slope[phase][on];
-      pixel.count += 1.0F;
-      if (t_ns >= previous_.reference_ns) {
-        pixel.level += step[on] * static_cast<float>(level.reached(t_ns, ticks, second_reference) -
-                                                     level.reached(t_ns, ticks, first_reference));
-      }
-    }
-    sequence += span.count;
-  }
-  return band;
+/// All rows, or every n-th, so that about Settings::most_events are used. The cost of passing by
+/// all of them is spread over the frames that follow.
+RowSample OnlineCalibration::nextRows(std::uint64_t events) {
+  resting_ = static_cast<int>(events / settings_.most_passed);
+  const std::uint64_t every =
+      std::max<std::uint64_t>(1, (events + settings_.most_events / 2) / settings_.most_events);
+  const int step = static_cast<int>(std::min(every, static_cast<std::uint64_t>(size_.height)));
+  return {next_row_++ % step, step};
 }
 
 double OnlineCalibration::Agreement::cosine() const {
@@ -293,39 +219,50 @@ double OnlineCalibration::Agreement::cosine() const {
 }
 
 /// Adds up the equations of a pair; returns how many pixels told something.
-std::size_t OnlineCalibration::fit(const Band& band, NormalEquations& equations,
+std::size_t OnlineCalibration::fit(const RowSample& rows, NormalEquations& equations,
                                    Agreement& agreement) const {
+  std::size_t pixels = 0;
+  for (int y = rows.first; y < size_.height; y += rows.step) {
+    pixels += fitRow(y, equations, agreement);
+  }
+  return pixels;
+}
+
+std::size_t OnlineCalibration::fitRow(int y, NormalEquations& equations,
+                                      Agreement& agreement) const {
   const Eigen::Vector3d theta(in_force_.thresholds.on, in_force_.thresholds.off,
                               static_cast<double>(in_force_.event_delay_ns) /
                                   static_cast<double>(kNanosecondsPerMillisecond));
   const double scale = fits_ < kFirstFits ? kFirstResidualScale : kResidualScale;
+  const auto width = static_cast<std::size_t>(size_.width);
+  const float* after = log_latent_.data() + static_cast<std::size_t>(y) * width;
+  const float* before = previous_.log_latent.data() + static_cast<std::size_t>(y) * width;
+  const PairEvidence::Pixel* row = evidence_.row(y);
   std::size_t pixels = 0;
-  for (std::size_t i = 0; i < band.pixels; ++i) {
-    const PixelEvidence& pixel = evidence_[i];
+  for (std::size_t x = 0; x < width; ++x) {
+    const PairEvidence::Pixel& pixel = row[x];
     const float change = std::fabs(pixel.weight[1] - pixel.weight[0]);
     if (change < kLeastChange || pixel.count > kMostEventsPerChange * change + kSpareEvents) {
       continue;
     }
-    const std::size_t at = band.first_pixel + i;
-    const auto residual =
-        static_cast<double>(log_latent_[at] - previous_.log_latent[at] - pixel.level);
+    const auto residual = static_cast<double>(after[x] - before[x] - pixel.level);
     if (std::isnan(residual)) {
       continue;  // one of both grey levels is no evidence
     }
     const auto by_events = static_cast<double>(pixel.level);
     const double scaled = residual / scale;
     // An error of log intensity is seen in proportion to the intensity.
-    const double intensity = std::exp(
-        static_cast<double>(log_latent_[at] + previous_.log_latent[at]) - 2.0 * log_typical_);
+    const double intensity =
+        std::exp(static_cast<double>(after[x] + before[x]) - 2.0 * log_typical_);
     const double weight =
         intensity /
         ((1.0 + scaled * scaled) * (1.0 + kVariancePerEvent * static_cast<double>(pixel.count)));
-    const Eigen::Vector3d x(static_cast<double>(pixel.weight[1]),
-                            -static_cast<double>(pixel.weight[0]),
-                            static_cast<double>(pixel.slope));
+    const Eigen::Vector3d terms(static_cast<double>(pixel.weight[1]),
+                                -static_cast<double>(pixel.weight[0]),
+                                static_cast<double>(pixel.slope));
     agreement.add(by_events + residual, by_events, intensity);
-    equations.matrix += weight * x * x.transpose();
-    equations.vector += weight * (residual + x.dot(theta)) * x;
+    equations.matrix += weight * terms * terms.transpose();
+    equations.vector += weight * (residual + terms.dot(theta)) * terms;
     ++pixels;
   }
   return pixels;

@@ -9,7 +9,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "fast_edi/calibration/online_calibration.hpp"
+#include "calibration/online_calibration.hpp"
 #include "fast_edi/events/event_counts.hpp"
 #include "fast_edi/events/event_stream.hpp"
 #include "fast_edi/filters/frame_noise_estimate.hpp"

@@ -1,4 +1,4 @@
-#include "fast_edi/calibration/online_calibration.hpp"
+#include "calibration/online_calibration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -188,7 +188,7 @@ TEST(OnlineCalibration, KeepsAGivenDelayThatNothingSpeaksAgainst) {
 }
 
 TEST(OnlineCalibration, APartOfManyEventsIsEnough) {
-  // Some 12,000 events in a pair: bands of a few rows.
+  // Some 12,000 events in a pair: every sixth row.
   const Calibration found =
       calibrated(RampScene(0), {{0.8 * kTrue.on, 1.2 * kTrue.off}}, {true, false, 2000});
   EXPECT_NEAR(found.thresholds.on / kTrue.on, 1.0, 0.05);
@@ -290,7 +290,7 @@ TEST_F(OnlineCalibrationPair, RestsWhenNothingIsToBeLearned) {
 TEST_F(OnlineCalibrationPair, RestsAfterAPairOfManyEventsInProportion) {
   eventsIn(0, kPeriod_ns + kExposure_ns);
   const std::uint64_t events = lists.lowerBound(kPeriod_ns + kExposure_ns);
-  calibration = OnlineCalibration(kSize, {kTrue}, {true, true, events / 3});
+  calibration = OnlineCalibration(kSize, {kTrue}, {true, true, events, events / 3});
   addFrame(0);
   addFrame(kPeriod_ns);
   for (int i = 0; i < 3; ++i) {

@@ -35,8 +35,9 @@
 ///
 /// Each pair is used until kInitialFits were informative, then one in kRestFrames frames; also
 /// after kMaxUselessPairs consecutive pairs that were not. Of a pair of more than
-/// Settings::most_events, a band of rows with about that many is used; the next pair takes the next
-/// band, and comes later by a frame for each most_events.
+/// Settings::most_events, every n-th row is used, n rows later for the next pair: some thousand
+/// pixels determine three numbers. Since all events are passed by all the same, the next pair comes
+/// later by a frame for each Settings::most_passed.
 ///
 /// A pair whose frames do not change as its events say (cosine below 0.8 over the informative
 /// pixels) teaches nothing: its events are wrong, not the parameters.
@@ -50,6 +51,7 @@
 
 #include <Eigen/Core>
 
+#include "calibration/pair_evidence.hpp"
 #include "fast_edi/base/contrast_threshold.hpp"
 #include "fast_edi/base/image.hpp"
 #include "fast_edi/base/level_model.hpp"
@@ -84,7 +86,8 @@ class OnlineCalibration {
   struct Settings {
     bool contrast = true;                   ///< learn the thresholds
     bool delay = true;                      ///< learn the delay
-    std::uint64_t most_events = 2'000'000;  ///< of a pair
+    std::uint64_t most_events = 250'000;    ///< used of a pair, about
+    std::uint64_t most_passed = 2'000'000;  ///< of a pair, without a pause after it
     LevelModel level = {};                  ///< that the gains are made with
   };
 
@@ -121,13 +124,6 @@ class OnlineCalibration {
   std::size_t memoryBytes() const;
 
  private:
-  /// What the events of a pair of frames say about one pixel.
-  struct PixelEvidence {
-    float weight[2];  ///< x_off, x_on
-    float slope;      ///< x_t [1/ms]
-    float level;      ///< l
-    float count;      ///< events
-  };
   /// Weighted X'X and X'(r + X theta), theta = (c_on, c_off, delay in ms).
   struct NormalEquations {
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
@@ -157,16 +153,11 @@ class OnlineCalibration {
     std::int64_t reference_ns = 0;
     std::vector<float> log_latent;  ///< as log_latent_
   };
-  /// Pixels of adjacent rows.
-  struct Band {
-    std::size_t first_pixel;
-    std::size_t pixels;
-  };
-
   void loadLogLatent(const Frame& frame, const CameraResponse& response);
-  Band nextBand(std::uint64_t events);
-  Band gather(const Frame& frame, const PixelEventLists& lists);
-  std::size_t fit(const Band& band, NormalEquations& equations, Agreement& agreement) const;
+  CalibrationOutcome learnFromPair(const Frame& frame, const PixelEventLists& lists);
+  RowSample nextRows(std::uint64_t events);
+  std::size_t fit(const RowSample& rows, NormalEquations& equations, Agreement& agreement) const;
+  std::size_t fitRow(int y, NormalEquations& equations, Agreement& agreement) const;
   void updateInForce();
 
   SensorSize size_;
@@ -177,12 +168,12 @@ class OnlineCalibration {
   int fits_ = 0;
   int useless_pairs_ = 0;  ///< since the last fit
   int resting_ = 0;        ///< frames until the next one is needed
-  int next_row_ = 0;       ///< of the next band
+  int next_row_ = 0;       ///< first one of the next pair
 
   Previous previous_;
-  double log_typical_ = 0.0;             ///< log exposure of a typical grey
-  std::vector<float> log_latent_;        ///< log B + log gain; NaN where B is no evidence
-  std::vector<PixelEvidence> evidence_;  ///< of the band, from its first pixel on
+  double log_typical_ = 0.0;       ///< log exposure of a typical grey
+  std::vector<float> log_latent_;  ///< log B + log gain; NaN where B is no evidence
+  PairEvidence evidence_;
 };
 
 }  // namespace fast_edi
