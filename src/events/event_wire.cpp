@@ -1,5 +1,7 @@
 #include "fast_edi/events/event_wire.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace fast_edi {
@@ -10,6 +12,8 @@ constexpr std::size_t kYOffset = 2;
 constexpr std::size_t kSecondsOffset = 4;
 constexpr std::size_t kNanosecondsOffset = 8;
 constexpr std::size_t kPolarityOffset = 12;
+/// Events that are encoded before they are appended.
+constexpr std::size_t kBlockEvents = 256;
 
 // ROS 1 puts numbers on the wire as the host has them, so a copy is the decoding; it also copes
 // with records of 13 bytes being aligned to nothing.
@@ -59,23 +63,29 @@ void encodeWireEvent(const Event& event, std::vector<std::uint8_t>& bytes) {
 }
 
 void encodeWireEvents(const Event* events, std::size_t count, std::vector<std::uint8_t>& bytes) {
-  const std::size_t begin = bytes.size();
-  bytes.resize(begin + count * kWireEventBytes);
-  std::uint8_t* record = bytes.data() + begin;
+  // By blocks, which are appended as they are: appended room is set to zero first.
+  std::array<std::uint8_t, kBlockEvents * kWireEventBytes> block;
   // The second's part is found once for all events within it: a division takes longer than the
   // rest.
   std::int64_t second_ns = 0;
   std::uint32_t second = 0;
-  for (const Event* event = events; event != events + count; ++event, record += kWireEventBytes) {
-    std::int64_t rest_ns = event->t_ns - second_ns;
-    if (rest_ns < 0 || rest_ns >= kNanosecondsPerSecond) {
-      second = static_cast<std::uint32_t>(event->t_ns / kNanosecondsPerSecond);
-      second_ns = std::int64_t{second} * kNanosecondsPerSecond;
-      rest_ns = event->t_ns - second_ns;
+  const Event* const end = events + count;
+  for (const Event* event = events; event != end;) {
+    const Event* const block_end =
+        event + std::min(kBlockEvents, static_cast<std::size_t>(end - event));
+    std::uint8_t* record = block.data();
+    for (; event != block_end; ++event, record += kWireEventBytes) {
+      std::int64_t rest_ns = event->t_ns - second_ns;
+      if (rest_ns < 0 || rest_ns >= kNanosecondsPerSecond) {
+        second = static_cast<std::uint32_t>(event->t_ns / kNanosecondsPerSecond);
+        second_ns = std::int64_t{second} * kNanosecondsPerSecond;
+        rest_ns = event->t_ns - second_ns;
+      }
+      setWirePixel(event->x, event->y, event->on, record);
+      writeNumber(second, record + kSecondsOffset);
+      writeNumber(static_cast<std::uint32_t>(rest_ns), record + kNanosecondsOffset);
     }
-    setWirePixel(event->x, event->y, event->on, record);
-    writeNumber(second, record + kSecondsOffset);
-    writeNumber(static_cast<std::uint32_t>(rest_ns), record + kNanosecondsOffset);
+    bytes.insert(bytes.end(), block.data(), record);
   }
 }
 

@@ -260,7 +260,7 @@ std::optional<std::vector<Aedat4TableEntry>> readAedat4Table(const ByteSource& f
   if (bytes == nullptr) {
     return std::nullopt;
   }
-  std::vector<std::uint8_t> plain;
+  RawBytes plain;
   if (!decompressor
            .run(header.compression, bytes, static_cast<std::size_t>(size), kMaxTableBytes, plain)
            .empty()) {

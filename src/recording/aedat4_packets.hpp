@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/raw_bytes.hpp"
 #include "fast_edi/recording/byte_source.hpp"
 #include "fast_edi/recording/recording.hpp"
 #include "recording/aedat4_header.hpp"
@@ -72,7 +73,7 @@ class Aedat4Packets {
   std::size_t merged_done_ = 0;
   Decompressor decompressor_;
   std::vector<std::uint8_t> scratch_;
-  std::vector<std::uint8_t> buffer_;
+  RawBytes buffer_;
 };
 
 }  // namespace fast_edi

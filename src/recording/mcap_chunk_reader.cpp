@@ -9,7 +9,7 @@
 
 namespace fast_edi {
 
-std::string McapChunkReader::read(const McapRecord& chunk, std::vector<std::uint8_t>& records) {
+std::string McapChunkReader::read(const McapRecord& chunk, RawBytes& records) {
   records.clear();
   const auto size = static_cast<std::size_t>(chunk.size);
   const std::uint8_t* bytes = file_.read(chunk.content, size, scratch_);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/raw_bytes.hpp"
 #include "fast_edi/recording/byte_source.hpp"
 #include "recording/mcap_records.hpp"
 #include "recording/packet_compression.hpp"
@@ -20,7 +21,7 @@ class McapChunkReader {
   /// \param chunk in the file, no larger than Rosbag2Storage::kMaxMessageBytes
   /// \param records what came of it; also where something is wrong, as far as it goes
   /// \return what is wrong; empty if nothing is
-  std::string read(const McapRecord& chunk, std::vector<std::uint8_t>& records);
+  std::string read(const McapRecord& chunk, RawBytes& records);
 
  private:
   const ByteSource& file_;

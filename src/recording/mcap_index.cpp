@@ -161,7 +161,7 @@ class McapIndexReader {
   }
 
   void findTopicsInChunks() {
-    std::vector<std::uint8_t> records;
+    RawBytes records;
     for (const McapPart& part : index_.parts) {
       if (!part.is_chunk) {
         continue;

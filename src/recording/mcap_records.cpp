@@ -30,8 +30,7 @@ std::optional<McapRecord> mcapRecordAt(const ByteSource& file, std::uint64_t off
                                                               : std::nullopt;
 }
 
-std::optional<McapRecord> mcapRecordAt(const std::vector<std::uint8_t>& records,
-                                       std::size_t place) {
+std::optional<McapRecord> mcapRecordAt(const RawBytes& records, std::size_t place) {
   if (records.size() - place < kMcapRecordHeaderBytes) {
     return std::nullopt;
   }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/raw_bytes.hpp"
 #include "fast_edi/recording/byte_source.hpp"
 #include "recording/packet_compression.hpp"
 
@@ -86,7 +87,7 @@ std::optional<McapRecord> mcapRecordAt(const ByteSource& file, std::uint64_t off
                                        std::vector<std::uint8_t>& scratch);
 /// The record at \p place of a chunk's records; nothing when it ends behind them.
 /// \pre place <= records.size()
-std::optional<McapRecord> mcapRecordAt(const std::vector<std::uint8_t>& records, std::size_t place);
+std::optional<McapRecord> mcapRecordAt(const RawBytes& records, std::size_t place);
 
 /// Nothing when it contradicts the size of the chunk.
 /// \param data of the chunk, of which \p there bytes can be read

@@ -49,7 +49,7 @@ void McapStorage::openChunk(std::size_t part) {
   if (!fault.empty()) {
     note(in_file.content, fault);
   }
-  const std::vector<std::uint8_t>& records = chunk.records;
+  const RawBytes& records = chunk.records;
   std::size_t place = 0;
   while (const std::optional<McapRecord> record = mcapRecordAt(records, place)) {
     const auto start = static_cast<std::size_t>(record->content);

@@ -15,6 +15,7 @@
 #include <tuple>
 #include <vector>
 
+#include "base/raw_bytes.hpp"
 #include "recording/mcap_chunk_reader.hpp"
 #include "recording/mcap_index.hpp"
 #include "recording/mcap_topics.hpp"
@@ -43,7 +44,7 @@ class McapStorage : public Rosbag2Storage {
 
  private:
   struct Chunk {
-    std::vector<std::uint8_t> records;
+    RawBytes records;
     std::size_t left = 0;  ///< messages that were not given yet
   };
   /// A message that can be given.

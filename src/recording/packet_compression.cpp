@@ -18,7 +18,7 @@ std::string tooLarge(std::size_t max_bytes) {
 }
 
 /// Makes room behind \p done bytes. \return false at the limit
-bool grow(std::vector<std::uint8_t>& output, std::size_t done, std::size_t max_bytes) {
+bool grow(RawBytes& output, std::size_t done, std::size_t max_bytes) {
   if (done < output.size()) {
     return true;
   }
@@ -53,7 +53,7 @@ struct Decompressor::State {
   State& operator=(const State&) = delete;
 
   std::string lz4Frame(const std::uint8_t* data, std::size_t size, std::size_t max_bytes,
-                       std::vector<std::uint8_t>& output) {
+                       RawBytes& output) {
     LZ4F_resetDecompressionContext(lz4);
     std::size_t done = 0;
     std::size_t taken = 0;
@@ -86,7 +86,7 @@ struct Decompressor::State {
   }
 
   std::string zstdFrame(const std::uint8_t* data, std::size_t size, std::size_t max_bytes,
-                        std::vector<std::uint8_t>& output) {
+                        RawBytes& output) {
     ZSTD_DCtx_reset(zstd, ZSTD_reset_session_only);
     ZSTD_inBuffer input{data, size, 0};
     std::size_t done = 0;
@@ -122,7 +122,7 @@ Decompressor::Decompressor() : state_(std::make_unique<State>()) {}
 Decompressor::~Decompressor() = default;
 
 std::string Decompressor::run(Compression compression, const std::uint8_t* data, std::size_t size,
-                              std::size_t max_bytes, std::vector<std::uint8_t>& output) {
+                              std::size_t max_bytes, RawBytes& output) {
   output.resize(std::min(output.capacity(), max_bytes));
   switch (compression) {
     case Compression::kLz4:

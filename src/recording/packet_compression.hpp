@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/raw_bytes.hpp"
+
 namespace fast_edi {
 
 enum class Compression { kNone, kLz4, kZstd };
@@ -26,7 +28,7 @@ class Decompressor {
   /// \param output what came of it; its memory is used again
   /// \return what is wrong; empty if nothing is
   std::string run(Compression compression, const std::uint8_t* data, std::size_t size,
-                  std::size_t max_bytes, std::vector<std::uint8_t>& output);
+                  std::size_t max_bytes, RawBytes& output);
 
  private:
   struct State;

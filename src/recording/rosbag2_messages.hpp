@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/raw_bytes.hpp"
 #include "fast_edi/recording/recording.hpp"
 #include "recording/packet_compression.hpp"
 #include "recording/rosbag2_files.hpp"
@@ -64,7 +65,7 @@ class Rosbag2Messages {
   std::vector<RecordingDamage> damage_;
   std::size_t first_notes_ = 0;  ///< of the construction
   Decompressor decompressor_;
-  std::vector<std::uint8_t> uncompressed_;
+  RawBytes uncompressed_;
 
   std::size_t file_index_ = 0;
   std::unique_ptr<Rosbag2File> file_;

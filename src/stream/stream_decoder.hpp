@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "base/raw_bytes.hpp"
 #include "fast_edi/recording/recording.hpp"
 #include "recording/aedat4_packet_decoder.hpp"
 #include "recording/flatbuffer.hpp"
@@ -41,7 +42,7 @@ class StreamDecoder {
   std::uint64_t packets_ = 0;
   bool is_open_ = false;
   std::vector<RecordingDamage> damage_;
-  std::vector<std::uint8_t> plain_;
+  RawBytes plain_;
   Decompressor decompressor_;
   Aedat4PacketDecoder decoder_;
 };

@@ -34,6 +34,10 @@ bool isRecordOfFile(const Bytes& bytes, std::uint64_t offset = 0) {
   return mcapRecordAt(file, offset, scratch).has_value();
 }
 
+RawBytes raw(const Bytes& bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
 TEST(McapFields, AreEmptyFromTheFirstThatIsCut) {
   Bytes bytes;
   append(bytes, std::uint16_t{7});
@@ -53,16 +57,16 @@ TEST(McapFields, AreEmptyFromTheFirstThatIsCut) {
 
 TEST(McapRecord, OfAChunkEndsWithinIt) {
   const Bytes bytes = recordOf(kMcapMessage, 5);
-  const std::optional<McapRecord> record = mcapRecordAt(bytes, 0);
+  const std::optional<McapRecord> record = mcapRecordAt(raw(bytes), 0);
   ASSERT_TRUE(record.has_value());
   EXPECT_EQ(record->kind, kMcapMessage);
   EXPECT_EQ(record->content, kMcapRecordHeaderBytes);
   EXPECT_EQ(record->size, 5U);
   EXPECT_EQ(record->end(), bytes.size());
-  EXPECT_FALSE(mcapRecordAt(bytes, bytes.size()).has_value());
-  EXPECT_FALSE(mcapRecordAt(bytes, bytes.size() - kMcapRecordHeaderBytes + 1).has_value());
+  EXPECT_FALSE(mcapRecordAt(raw(bytes), bytes.size()).has_value());
+  EXPECT_FALSE(mcapRecordAt(raw(bytes), bytes.size() - kMcapRecordHeaderBytes + 1).has_value());
   for (const std::uint64_t stated : {std::uint64_t{6}, kHuge / 2, kHuge - 8, kHuge}) {
-    EXPECT_FALSE(mcapRecordAt(recordOf(kMcapMessage, stated), 0).has_value()) << stated;
+    EXPECT_FALSE(mcapRecordAt(raw(recordOf(kMcapMessage, stated)), 0).has_value()) << stated;
   }
 }
 

@@ -26,7 +26,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, PacketCompression,
 TEST_P(PacketCompression, GivesBackWhatWentIn) {
   Decompressor decompressor;
   std::vector<std::uint8_t> compressed;
-  std::vector<std::uint8_t> output;
+  RawBytes output;
   for (const std::size_t size : {1U, 1000U, 262144U, 3000000U}) {
     const std::vector<std::uint8_t> plain = pattern(size);
     compress(GetParam(), plain.data(), plain.size(), compressed);
@@ -43,7 +43,7 @@ TEST_P(PacketCompression, ABombIsStoppedAtTheLimit) {
   compress(GetParam(), zeros.data(), zeros.size(), compressed);
   ASSERT_LT(compressed.size(), kLimit / 8);
   Decompressor decompressor;
-  std::vector<std::uint8_t> output;
+  RawBytes output;
   const std::string fault =
       decompressor.run(GetParam(), compressed.data(), compressed.size(), kLimit, output);
   EXPECT_NE(fault.find("larger than 1048576 bytes"), std::string::npos) << fault;
@@ -55,7 +55,7 @@ TEST_P(PacketCompression, TheBeginOfACutFrame) {
   std::vector<std::uint8_t> compressed;
   compress(GetParam(), plain.data(), plain.size(), compressed);
   Decompressor decompressor;
-  std::vector<std::uint8_t> output;
+  RawBytes output;
   EXPECT_NE(
       decompressor.run(GetParam(), compressed.data(), compressed.size() * 3 / 4, kPlenty, output),
       "");
@@ -67,7 +67,7 @@ TEST_P(PacketCompression, TheBeginOfACutFrame) {
 TEST_P(PacketCompression, NoiseIsRefused) {
   const std::vector<std::uint8_t> noise = pattern(100);
   Decompressor decompressor;
-  std::vector<std::uint8_t> output;
+  RawBytes output;
   EXPECT_NE(decompressor.run(GetParam(), noise.data(), noise.size(), kPlenty, output), "");
   EXPECT_NE(decompressor.run(GetParam(), noise.data(), 0, kPlenty, output), "");
 }
