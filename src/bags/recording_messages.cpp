@@ -42,6 +42,26 @@ std::string topicName(const std::string& name) {
              : topic;
 }
 
+/// The first event outside of \p interval, or \p end. Whole blocks are looked at without a branch
+/// for each event: in a recording few of them hold the end of an array.
+const Event* firstOutside(const Event* begin, const Event* end, const ExposureInterval& interval) {
+  constexpr std::ptrdiff_t kBlock = 256;
+  const auto is_outside = [&interval](const Event& event) {
+    return event.t_ns < interval.start_ns || event.t_ns >= interval.end_ns;
+  };
+  for (; end - begin >= kBlock; begin += kBlock) {
+    int outside = 0;
+    for (const Event* event = begin; event != begin + kBlock; ++event) {
+      outside |= static_cast<int>(event->t_ns < interval.start_ns) |
+                 static_cast<int>(event->t_ns >= interval.end_ns);
+    }
+    if (outside != 0) {
+      break;
+    }
+  }
+  return std::find_if(begin, end, is_outside);
+}
+
 }  // namespace
 
 RecordingMessages::RecordingMessages(std::unique_ptr<Recording> recording, std::int64_t array_ns)
@@ -191,9 +211,7 @@ void RecordingMessages::addEvents(Output& output, const RecordedEvents& events,
     const Event* array_end = end;
     if (array_ns_ > 0) {
       // From the first of the array on; also a jump back ends it.
-      array_end = std::find_if(begin, end, [&](const Event& event) {
-        return event.t_ns >= output.first_ns + array_ns_ || event.t_ns < output.first_ns;
-      });
+      array_end = firstOutside(begin, end, {output.first_ns, output.first_ns + array_ns_});
     }
     encodeWireEvents(begin, static_cast<std::size_t>(array_end - begin), output.records);
     if (array_end != begin) {

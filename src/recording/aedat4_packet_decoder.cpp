@@ -87,18 +87,20 @@ bool Aedat4PacketDecoder::giveSomeEvents(RecordingItem& item) {
   const std::size_t end = std::min(elements_.count, done_ + kMaxItemEvents);
   events_.resize(end - done_);
   std::size_t count = 0;
-  std::size_t untold = 0;
-  for (; done_ < end; ++done_) {
-    const std::uint8_t* element = elements_.data + done_ * kEventBytes;
-    const std::optional<std::int64_t> t_ns = aedat4Stamp(numberAt<std::int64_t>(element));
-    if (!t_ns) {
-      ++untold;
-      continue;
-    }
+  const std::uint8_t* element = elements_.data + done_ * kEventBytes;
+  for (std::size_t i = done_; i < end; ++i, element += kEventBytes) {
+    const auto t_us = numberAt<std::int64_t>(element);
+    // Unsigned: what is no stamp may overflow, and is not kept.
+    const std::uint64_t t_ns =
+        static_cast<std::uint64_t>(t_us) * static_cast<std::uint64_t>(kNanosecondsPerMicrosecond);
     // Negative coordinates become ones beyond any sensor, which the pipeline drops and counts.
-    events_[count++] = {numberAt<std::uint16_t>(element + kEventX),
-                        numberAt<std::uint16_t>(element + kEventY), *t_ns, element[kEventOn] != 0};
+    events_[count] = {numberAt<std::uint16_t>(element + kEventX),
+                      numberAt<std::uint16_t>(element + kEventY), static_cast<std::int64_t>(t_ns),
+                      element[kEventOn] != 0};
+    count += isAedat4Stamp(t_us) ? 1 : 0;  // without a branch; the next event takes its place else
   }
+  const std::size_t untold = end - done_ - count;
+  done_ = end;
   if (untold > 0) {
     note(std::to_string(untold) + " events with times before 1970 or after 2106");
   }

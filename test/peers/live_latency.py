@@ -34,7 +34,7 @@ import xmlrpc.client
 FOLDER = pathlib.Path(__file__).resolve().parent
 ROOT = FOLDER.parents[1]
 sys.path.insert(0, str(ROOT / "test" / "faults"))
-from processes import Process, find_program, free_port, wait_until  # noqa: E402 (needs the path)
+from processes import Failure, Process, find_program, free_port, wait_until  # noqa: E402 (needs the path)
 
 MOST_P99_MS = 12.0
 MOST_GAP_S = 1.0
@@ -169,6 +169,13 @@ class Diagnostics:
     def value(self, node, key):
         return self.values.get(node, {}).get(key)
 
+    def wait_for(self, node, key, expected):
+        """Until a value is what was expected; says what all values of the nodes are if it does not become that."""
+        try:
+            wait_until(lambda: self.value(node, key) == expected, SETTLE_TIMEOUT_S, f"{node}: {key} {expected}")
+        except Failure as failure:
+            raise Failure(f"{failure}; what the nodes said last: {json.dumps(self.values, indent=1)}") from failure
+
 
 def wait_for_deblurring(arrivals):
     """Until the nodelet has seen its subscriber, and gets events and frames itself."""
@@ -253,8 +260,7 @@ def latency(python, recording, config, node_processors, log):
             server.begin()
             sent = server.sent()
             events = sum(count for _, count, _ in sent["events"])
-            wait_until(lambda: diagnostics.value("dvs/deblur", "Events in") == str(events), SETTLE_TIMEOUT_S,
-                       f"{events} events")
+            diagnostics.wait_for("dvs/deblur", "Events in", str(events))
             wait_until(lambda: len(arrivals.found) >= len(sent["frames"]), SETTLE_TIMEOUT_S,
                        f"{len(sent['frames'])} frames")
         arrivals.subscriber.unregister()
@@ -295,8 +301,7 @@ def cuts(python, recording, log):
                 # Frames come regularly again.
                 wait_until(lambda: len(arrivals.found) > before + 10, SETTLE_TIMEOUT_S, "ten frames after a cut")
             for kind in relays:
-                wait_until(lambda: diagnostics.value("dvs/dv_stream", f"{kind}: cuts") == str(CUTS), SETTLE_TIMEOUT_S,
-                           f"{CUTS} cuts of {kind}")
+                diagnostics.wait_for("dvs/dv_stream", f"{kind}: cuts", str(CUTS))
     row(f"second frame after each of {CUTS} cuts of both connections", gaps)
     if max(gaps) > MOST_GAP_S:
         faults.append(f"frames came again after {max(gaps):.2f} s, expected {MOST_GAP_S:.0f} s")
