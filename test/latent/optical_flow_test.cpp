@@ -90,6 +90,44 @@ TEST(OpticalFlow, FindsRotationAndZoom) {
   EXPECT_LT(largestError(flowOf(waves, truth), truth), 0.1);
 }
 
+/// Rows or columns in the opposite order.
+template <typename Element>
+std::vector<Element> mirrored(const std::vector<Element>& plane, SensorSize size, bool rows) {
+  std::vector<Element> result;
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const int from_x = rows ? x : size.width - 1 - x;
+      const int from_y = rows ? size.height - 1 - y : y;
+      result.push_back(
+          plane[static_cast<std::size_t>(from_y) * size.width + static_cast<std::size_t>(from_x)]);
+    }
+  }
+  return result;
+}
+
+/// All four borders are treated alike.
+TEST(OpticalFlow, OfMirroredImagesIsMirroredUpToTheBorder) {
+  constexpr SensorSize kEven{128, 64};  // on all levels of the pyramid
+  constexpr float kRounding_px = 1e-4F;
+  const std::vector<float> target = render(kEven, waves, kStill);
+  const std::vector<float> from = render(kEven, waves, [&](int x, int y) {
+    return Displacement{0.02F * static_cast<float>(x - kEven.width / 2),
+                        0.02F * static_cast<float>(y - kEven.height / 2)};
+  });
+  OpticalFlow flow(kEven);
+  flow.setTarget(target.data());
+  const std::vector<Displacement> found = flow.from(from.data());
+  for (const bool rows : {true, false}) {
+    flow.setTarget(mirrored(target, kEven, rows).data());
+    const std::vector<Displacement> back =
+        mirrored(flow.from(mirrored(from, kEven, rows).data()), kEven, rows);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ASSERT_NEAR(back[i].x, rows ? found[i].x : -found[i].x, kRounding_px) << rows << ", " << i;
+      ASSERT_NEAR(back[i].y, rows ? -found[i].y : found[i].y, kRounding_px) << rows << ", " << i;
+    }
+  }
+}
+
 TEST(OpticalFlow, IsZeroBetweenEqualImages) {
   for (const Displacement& u : flowOf(waves, kStill)) {
     ASSERT_EQ(u.x, 0.0F);
