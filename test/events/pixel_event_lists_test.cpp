@@ -353,6 +353,16 @@ TEST(PixelEventLists, WorksWithTheSmallestLimits) {
   EXPECT_EQ(lists.overflowed(), 999u);
 }
 
+TEST(PixelEventLists, TakesJumpLimitsOfANanosecond) {
+  PixelEventLists lists(kSize, {10, 1, 1});
+  const auto at = [](std::int64_t t_ns) { return Event{1, 2, kStart + t_ns, true}; };
+  EXPECT_EQ(lists.append(at(0)).accepted, 1u);
+  EXPECT_EQ(lists.append(at(1)).accepted, 1u);
+  EXPECT_EQ(lists.append(at(3)).stop, AppendStop::kForwardJump);
+  EXPECT_EQ(lists.append(at(0)).late, 1u);
+  EXPECT_EQ(lists.append(at(-1)).stop, AppendStop::kBackwardJump);
+}
+
 TEST(PixelEventLists, StartsAnewAfterAFlush) {
   PixelEventLists lists(kSize, {});
   append(lists, uniformEvents(100'000, kStart, 40 * kMillisecond));
