@@ -117,9 +117,7 @@ std::unique_ptr<NodeInputs> DeblurNode::makeInputs() {
   handlers.camera_info = [this](const sensor_msgs::CameraInfoConstPtr& message) {
     receiveCameraInfo(message);
   };
-  handlers.exposure = [this](const std_msgs::Int32ConstPtr& message) {
-    withInputs([&] { deblurrer_->addExposure(message->data, callback_.start_ns); });
-  };
+  handlers.exposure = [this](const std_msgs::Int32ConstPtr& message) { receiveExposure(message); };
   handlers.biases = [this](const dynamic_reconfigure::ConfigConstPtr& message) {
     withInputs([&] { report_.addRefusedBiases(parameters_->followBiases(message)); });
   };
@@ -197,6 +195,9 @@ void DeblurNode::withInputs(Work&& work) {
 void DeblurNode::receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                                std::int64_t arrived_ns) {
   withInputs([&] {
+    if (isRepeated(inputs_->repeats(events, sequence))) {
+      return;
+    }
     // What the array cost and waited before this callback belongs to the latency of the frame that
     // it completes.
     callback_.arrived_ns = arrived_ns;
@@ -213,8 +214,24 @@ std::size_t DeblurNode::maxWaitingEvents() const {
   return parameters_->get().deblur.max_buffered_events - deblurrer_->bufferedEvents();
 }
 
+bool DeblurNode::isRepeated(bool repeats) {
+  report_.totals().messages_repeated += repeats ? 1 : 0;
+  return repeats;
+}
+
+void DeblurNode::receiveExposure(const std_msgs::Int32ConstPtr& message) {
+  withInputs([&] {
+    if (!isRepeated(inputs_->repeats(message))) {
+      deblurrer_->addExposure(message->data, callback_.start_ns);
+    }
+  });
+}
+
 void DeblurNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
   withInputs([&] {
+    if (isRepeated(inputs_->repeats(message))) {
+      return;
+    }
     NodeSnapshot& totals = report_.totals();
     totals.last_frame_ns = callback_.start_ns;
     totals.frames_missing += inputs_->missingFramesBefore(message->header.seq);

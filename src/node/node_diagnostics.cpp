@@ -88,6 +88,10 @@ void NodeDiagnostics::collectComplaints(const NodeSnapshot& now) {
            "image(s)" + on_image + " refused: " + now.malformed_reason);
   complain("image gap", now.frames_missing, before_.frames_missing,
            "frame(s)" + on_image + " lost on the way, by the holes in header.seq");
+  complain("repeated", now.messages_repeated, before_.messages_repeated,
+           "message(s)" + on_events + "," + on_image + " or" + on_exposure +
+               " came twice and were dropped once: roscpp connected a publisher of this process "
+               "twice, which advertised while this nodelet subscribed");
   complain("camera info", now.camera_infos_refused, before_.camera_infos_refused,
            "camera_info(s) beside " + topics_.image +
                " refused, the one before kept: " + now.camera_info_refusal);
@@ -235,6 +239,7 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
   status.add("Frames abandoned", c.frames_abandoned);
   status.add("Frames refused", now_.frames_malformed);
   status.add("Frames missing", now_.frames_missing);
+  status.add("Messages repeated", now_.messages_repeated);
   status.add("Camera infos refused", now_.camera_infos_refused);
   status.add("Frame time jumps", c.frame_time_jumps);
   status.add("Events in", c.events_in);

@@ -35,6 +35,7 @@ struct NodeSnapshot {
   std::uint64_t frames_out = 0;
   std::uint64_t frames_malformed = 0;
   std::uint64_t frames_missing = 0;     ///< numbers left out in header.seq of the images
+  std::uint64_t messages_repeated = 0;  ///< arrays, frames, exposures that came twice: dropped
   std::uint64_t event_suspensions = 0;  ///< times that events were not received, see OverloadGuard
   std::uint64_t camera_infos_refused = 0;
   std::uint64_t bias_updates_refused = 0;

@@ -22,6 +22,7 @@
 #include "node/event_subscription.hpp"
 #include "node/overload_guard.hpp"
 #include "node/periodic_callback.hpp"
+#include "node/repeated_messages.hpp"
 
 namespace fast_edi {
 
@@ -56,6 +57,16 @@ class NodeInputs {
   /// \throws ros::Exception for an input that cannot be subscribed to; the next call goes on there
   void update();
 
+  /// Whether a message is the one before once more; see repeated_messages.hpp.
+  bool repeats(const WireEvents& events, std::uint32_t sequence) {
+    return repeated_events_.repeats(events, sequence);
+  }
+  bool repeats(const sensor_msgs::ImageConstPtr& message) {
+    return repeated_images_.repeats(message);
+  }
+  bool repeats(const std_msgs::Int32ConstPtr& message) {
+    return repeated_exposures_.repeats(message);
+  }
   /// \return frames that are missing before the one with this header.seq
   std::uint64_t missingFramesBefore(std::uint32_t sequence);
   /// Bounds the events that wait from the next array on.
@@ -66,6 +77,9 @@ class NodeInputs {
 
  private:
   const Handlers handlers_;
+  RepeatedArrays repeated_events_;
+  RepeatedPointers repeated_images_;
+  RepeatedPointers repeated_exposures_;
   SequenceGaps image_gaps_;
   OverloadGuard overload_;
   std::unique_ptr<EventSubscription> events_;

@@ -204,6 +204,7 @@ TEST_F(NodeDiagnosticsTest, ComplainsOfWhatTheNodeItselfRefused) {
   now_.frames_malformed = 1;
   now_.malformed_reason = "step 3 bytes, expected at least 4";
   now_.frames_missing = 7;
+  now_.messages_repeated = 6;
   now_.camera_infos_refused = 1;
   now_.camera_info_refusal = "K holds";
   now_.bias_updates_refused = 1;
@@ -217,6 +218,8 @@ TEST_F(NodeDiagnosticsTest, ComplainsOfWhatTheNodeItselfRefused) {
   EXPECT_EQ(value(status, "Event suspensions"), "2");
   EXPECT_THAT(status.message, HasSubstr("step 3 bytes"));
   EXPECT_THAT(status.message, HasSubstr("7 frame(s)"));
+  EXPECT_THAT(status.message, HasSubstr("6 message(s) on /dvs/events"));
+  EXPECT_EQ(value(status, "Messages repeated"), "6");
   EXPECT_THAT(status.message, HasSubstr("K holds"));
   EXPECT_THAT(status.message, HasSubstr("/driver/parameter_updates"));
   EXPECT_THAT(status.message, HasSubstr("std::bad_alloc"));

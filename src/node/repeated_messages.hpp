@@ -1,0 +1,64 @@
+/// \file
+/// Messages that are delivered twice.
+///
+/// roscpp (seen with 1.15.15) connects a publisher and a subscriber of one process twice if one of
+/// them advertises while the other one subscribes: TopicManager::advertise() and
+/// TopicManager::subscribe() each find the other's entry, and each adds a connection. From then on
+/// everything comes twice. A nodelet manager that loads a driver while a lazy nodelet begins to
+/// listen does just that.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+#include <boost/smart_ptr/shared_ptr.hpp>
+#include <boost/smart_ptr/weak_ptr.hpp>
+
+#include "fast_edi/events/event_wire.hpp"
+
+namespace fast_edi {
+
+/// Messages that both connections deliver as the same pointer.
+class RepeatedPointers {
+ public:
+  /// Whether this message is the one of the call before.
+  bool repeats(const boost::shared_ptr<const void>& message) {
+    const bool same = last_.lock() == message;
+    last_ = message;
+    return same;
+  }
+
+ private:
+  boost::weak_ptr<const void> last_;  // so that no message lives longer
+};
+
+/// Event arrays: each connection may decode its own.
+class RepeatedArrays {
+ public:
+  /// Whether an array is that of the call before, by its number, its size, its first and its last
+  /// event. Empty arrays say nothing.
+  bool repeats(const WireEvents& events, std::uint32_t sequence) {
+    if (events.count == 0) {
+      return false;
+    }
+    Identity identity{sequence, events.count, {}};
+    std::memcpy(identity.ends.data(), events.record(0), kWireEventBytes);
+    std::memcpy(identity.ends.data() + kWireEventBytes, events.record(events.count - 1),
+                kWireEventBytes);
+    const bool same = identity.sequence == last_.sequence && identity.count == last_.count &&
+                      identity.ends == last_.ends;
+    last_ = identity;
+    return same;
+  }
+
+ private:
+  struct Identity {
+    std::uint32_t sequence = 0;
+    std::size_t count = 0;  ///< 0: no array yet
+    std::array<std::uint8_t, 2 * kWireEventBytes> ends{};
+  };
+  Identity last_;
+};
+
+}  // namespace fast_edi
