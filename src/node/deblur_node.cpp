@@ -117,10 +117,13 @@ std::unique_ptr<NodeInputs> DeblurNode::makeInputs() {
   handlers.camera_info = [this](const sensor_msgs::CameraInfoConstPtr& message) {
     receiveCameraInfo(message);
   };
-  handlers.exposure = [this](const std_msgs::Int32ConstPtr& message) { receiveExposure(message); };
+  handlers.exposure = [this](const std_msgs::Int32ConstPtr& message) {
+    withInputs([&] { deblurrer_->addExposure(message->data, callback_.start_ns); });
+  };
   handlers.biases = [this](const dynamic_reconfigure::ConfigConstPtr& message) {
     withInputs([&] { report_.addRefusedBiases(parameters_->followBiases(message)); });
   };
+  handlers.repeated = [this] { withInputs([&] { ++report_.totals().messages_repeated; }); };
   handlers.tick = [this] { advanceClock(); };
   handlers.on_change = [this] { callback_thread_.post([this] { updateInputs(); }); };
   report_.startListening(steadyNow());
@@ -195,7 +198,8 @@ void DeblurNode::withInputs(Work&& work) {
 void DeblurNode::receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                                std::int64_t arrived_ns) {
   withInputs([&] {
-    if (isRepeated(inputs_->repeats(events, sequence))) {
+    if (inputs_->repeats(events, sequence)) {
+      ++report_.totals().messages_repeated;
       return;
     }
     // What the array cost and waited before this callback belongs to the latency of the frame that
@@ -214,24 +218,8 @@ std::size_t DeblurNode::maxWaitingEvents() const {
   return parameters_->get().deblur.max_buffered_events - deblurrer_->bufferedEvents();
 }
 
-bool DeblurNode::isRepeated(bool repeats) {
-  report_.totals().messages_repeated += repeats ? 1 : 0;
-  return repeats;
-}
-
-void DeblurNode::receiveExposure(const std_msgs::Int32ConstPtr& message) {
-  withInputs([&] {
-    if (!isRepeated(inputs_->repeats(message))) {
-      deblurrer_->addExposure(message->data, callback_.start_ns);
-    }
-  });
-}
-
 void DeblurNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
   withInputs([&] {
-    if (isRepeated(inputs_->repeats(message))) {
-      return;
-    }
     NodeSnapshot& totals = report_.totals();
     totals.last_frame_ns = callback_.start_ns;
     totals.frames_missing += inputs_->missingFramesBefore(message->header.seq);
@@ -251,20 +239,15 @@ void DeblurNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
 void DeblurNode::receiveCameraInfo(const sensor_msgs::CameraInfoConstPtr& message) {
   withInputs([&] {
     const std::string fault = cameraInfoFault(*message);
-    if (!fault.empty()) {
-      report_.addRefusedCameraInfo(fault);
-    } else {
-      sink_->setCameraInfo(message);
-    }
+    fault.empty() ? sink_->setCameraInfo(message) : report_.addRefusedCameraInfo(fault);
   });
 }
 
 void DeblurNode::advanceClock() {
   withInputs([&] {
     deblurrer_->advance(callback_.start_ns);
-    if (inputs_->guardAgainstOverload(callback_.start_ns, deblurrer_->counters())) {
-      ++report_.totals().event_suspensions;
-    }
+    const bool suspends = inputs_->guardAgainstOverload(callback_.start_ns, deblurrer_->counters());
+    report_.totals().event_suspensions += suspends ? 1 : 0;
   });
 }
 

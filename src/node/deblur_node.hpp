@@ -89,9 +89,6 @@ class DeblurNode {
 
   void receiveEvents(const WireEvents& events, SensorSize size, std::uint32_t sequence,
                      std::int64_t arrived_ns);
-  void receiveExposure(const std_msgs::Int32ConstPtr& message);
-  /// Counts a message that came twice. \return \p repeats
-  bool isRepeated(bool repeats);
   void receiveImage(const sensor_msgs::ImageConstPtr& message);
   void receiveCameraInfo(const sensor_msgs::CameraInfoConstPtr& message);
   void advanceClock();

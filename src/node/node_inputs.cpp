@@ -19,11 +19,9 @@ const ros::WallDuration kTickPeriod(0.004);
 template <typename Message>
 ros::Subscriber subscribe(
     ros::NodeHandle& nh, const char* topic, std::uint32_t queue,
-    const std::function<void(const boost::shared_ptr<const Message>&)>& handler,
+    const boost::function<void(const boost::shared_ptr<const Message>&)>& handler,
     const ros::TransportHints& hints) {
-  return nh.subscribe<Message>(
-      topic, queue, boost::function<void(const boost::shared_ptr<const Message>&)>(handler),
-      ros::VoidConstPtr(), hints);
+  return nh.subscribe<Message>(topic, queue, handler, ros::VoidConstPtr(), hints);
 }
 
 }  // namespace
@@ -37,6 +35,20 @@ NodeInputs::NodeInputs(const ros::NodeHandle& nh, const ros::NodeHandle& private
       nh_(nh),
       private_nh_(private_nh) {}
 
+/// roscpp calls one subscription's callbacks one at a time: \p last needs no lock.
+template <typename Message>
+boost::function<void(const boost::shared_ptr<const Message>&)> NodeInputs::once(
+    const std::function<void(const boost::shared_ptr<const Message>&)>& handler,
+    RepeatedPointers& last) const {
+  return [this, &handler, &last](const boost::shared_ptr<const Message>& message) {
+    if (last.repeats(message)) {
+      handlers_.repeated();
+    } else {
+      handler(message);
+    }
+  };
+}
+
 /// One by one, so that what cannot be subscribed to keeps none of the others.
 void NodeInputs::update() {
   if (subscribed_) {
@@ -45,19 +57,22 @@ void NodeInputs::update() {
   }
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
   if (!camera_info_) {
-    camera_info_ = subscribe(nh_, "camera_info", kLatestWins, handlers_.camera_info, no_delay);
+    camera_info_ = subscribe<sensor_msgs::CameraInfo>(nh_, "camera_info", kLatestWins,
+                                                      handlers_.camera_info, no_delay);
   }
   if (!biases_) {
     // With explicit thresholds too: they may be given back to the biases live.
-    biases_ = subscribe(nh_, "bias_updates", kLatestWins, handlers_.biases, no_delay);
+    biases_ = subscribe<dynamic_reconfigure::Config>(nh_, "bias_updates", kLatestWins,
+                                                     handlers_.biases, no_delay);
   }
   if (!exposure_) {
-    exposure_ = subscribe(nh_, "exposure", kExposureQueue, handlers_.exposure, no_delay);
+    exposure_ = subscribe(nh_, "exposure", kExposureQueue,
+                          once(handlers_.exposure, repeated_exposures_), no_delay);
   }
   events_->update();
   if (!image_) {
     image_ = image_transport::ImageTransport(nh_).subscribe(
-        "image_raw", kImageQueue, handlers_.image, ros::VoidPtr(),
+        "image_raw", kImageQueue, once(handlers_.image, repeated_images_), ros::VoidPtr(),
         image_transport::TransportHints("raw", no_delay, private_nh_));
   }
   clock_.emplace(nh_, kTickPeriod, handlers_.tick);

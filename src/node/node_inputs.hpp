@@ -16,6 +16,7 @@
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <std_msgs/Int32.h>
+#include <boost/function.hpp>
 
 #include "fast_edi/base/deblur_counters.hpp"
 #include "fast_edi/events/sequence_gaps.hpp"
@@ -39,7 +40,8 @@ class NodeInputs {
     std::function<void(const sensor_msgs::CameraInfoConstPtr&)> camera_info;
     std::function<void(const std_msgs::Int32ConstPtr&)> exposure;
     std::function<void(const dynamic_reconfigure::ConfigConstPtr&)> biases;
-    std::function<void()> tick;  ///< every few milliseconds
+    std::function<void()> repeated;  ///< instead of a frame or an exposure that came twice
+    std::function<void()> tick;      ///< every few milliseconds
     /// update() has something to do: from any thread, with no lock held.
     std::function<void()> on_change;
   };
@@ -57,15 +59,9 @@ class NodeInputs {
   /// \throws ros::Exception for an input that cannot be subscribed to; the next call goes on there
   void update();
 
-  /// Whether a message is the one before once more; see repeated_messages.hpp.
+  /// Whether an array is the one before once more; see repeated_messages.hpp.
   bool repeats(const WireEvents& events, std::uint32_t sequence) {
     return repeated_events_.repeats(events, sequence);
-  }
-  bool repeats(const sensor_msgs::ImageConstPtr& message) {
-    return repeated_images_.repeats(message);
-  }
-  bool repeats(const std_msgs::Int32ConstPtr& message) {
-    return repeated_exposures_.repeats(message);
   }
   /// \return frames that are missing before the one with this header.seq
   std::uint64_t missingFramesBefore(std::uint32_t sequence);
@@ -76,6 +72,11 @@ class NodeInputs {
   bool guardAgainstOverload(std::int64_t now_ns, const DeblurCounters& counts);
 
  private:
+  template <typename Message>
+  boost::function<void(const boost::shared_ptr<const Message>&)> once(
+      const std::function<void(const boost::shared_ptr<const Message>&)>& handler,
+      RepeatedPointers& last) const;
+
   const Handlers handlers_;
   RepeatedArrays repeated_events_;
   RepeatedPointers repeated_images_;

@@ -11,7 +11,9 @@
 #include <gmock/gmock.h>
 #include <ros/callback_queue.h>
 #include <ros/spinner.h>
+#include <boost/smart_ptr/make_shared.hpp>
 
+#include "rostest/camera_publishers.hpp"
 #include "rostest/node_client.hpp"
 #include "rostest/recording.hpp"
 #include "rostest/ros_process.hpp"
@@ -32,6 +34,7 @@ class NodeInputsTest : public ::testing::Test {
     std::atomic<int> exposures{0};
     std::atomic<int> ticks{0};
     std::atomic<int> biases{0};
+    std::atomic<int> repeated{0};
   };
 
   static void SetUpTestSuite() { test::requireRos(); }
@@ -54,6 +57,7 @@ class NodeInputsTest : public ::testing::Test {
     handlers.exposure = [this](const std_msgs::Int32ConstPtr&) { ++counts_.exposures; };
     handlers.biases = [this](const dynamic_reconfigure::ConfigConstPtr&) { ++counts_.biases; };
     handlers.tick = [this] { ++counts_.ticks; };
+    handlers.repeated = [this] { ++counts_.repeated; };
     handlers.on_change = [] {};
     return handlers;
   }
@@ -119,6 +123,22 @@ TEST_F(NodeInputsTest, CountsFramesThatAreMissing) {
   EXPECT_EQ(inputs_->missingFramesBefore(8), 0U);
   EXPECT_EQ(inputs_->missingFramesBefore(12), 3U);
   EXPECT_EQ(inputs_->missingFramesBefore(0), 0U) << "a restarted driver";
+}
+
+TEST_F(NodeInputsTest, GivesMessagesThatComeTwiceOnce) {
+  const test::CameraPublishers camera(nh_);
+  inputs_->update();
+  ASSERT_TRUE(test::waitUntil([&] { return camera.allConnected(); }));
+  test::Arrival image;
+  image.image = boost::make_shared<const sensor_msgs::Image>();
+  test::Arrival exposure;
+  exposure.exposure = boost::make_shared<const std_msgs::Int32>();
+  for (const test::Arrival& arrival : {image, image, exposure, exposure}) {
+    camera.publish(arrival);
+  }
+  EXPECT_TRUE(test::waitUntil([this] { return counts_.repeated == 2; }));
+  EXPECT_EQ(counts_.images, 1);
+  EXPECT_EQ(counts_.exposures, 1);
 }
 
 TEST_F(NodeInputsTest, SuspendsEventsOnceUnderOverload) {
