@@ -7,6 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include "bags/chunk_compression.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -23,6 +25,8 @@ constexpr std::size_t kMaxStepBytes = std::size_t{1} << 30;
 /// One streaming decompressor: next_in/next_out of both libraries, made alike.
 class Bz2 {
  public:
+  static std::size_t spareBytes(std::size_t) { return 0; }
+
   Bz2(const std::uint8_t* data, std::size_t size) {
     stream_.next_in = const_cast<char*>(reinterpret_cast<const char*>(data));
     stream_.avail_in = static_cast<unsigned>(size);
@@ -47,6 +51,8 @@ class Bz2 {
     return written;
   }
 
+  bool hasTakenAll() const { return stream_.avail_in == 0; }
+
  private:
   bz_stream stream_ = {};
   bool usable_ = false;
@@ -55,6 +61,12 @@ class Bz2 {
 /// liblz4's own frame decoder instead of roslz4's: the latter follows a damaged block length.
 class Lz4 {
  public:
+  /// liblz4 decodes in place only where there is room for a whole block, which a chunk's only one
+  /// does not fill; else it copies, which small chunks do not mind.
+  static std::size_t spareBytes(std::size_t size) {
+    return size < kBlockBytes / 4 ? 0 : kBlockBytes;
+  }
+
   Lz4(const std::uint8_t* data, std::size_t size) : next_(data), left_(size) {
     usable_ = !LZ4F_isError(LZ4F_createDecompressionContext(&context_, LZ4F_VERSION));
   }
@@ -80,7 +92,11 @@ class Lz4 {
     return written;
   }
 
+  bool hasTakenAll() const { return left_ == 0; }
+
  private:
+  static constexpr std::size_t kBlockBytes = std::size_t{1} << 20;  ///< in rosbag
+
   LZ4F_dctx* context_ = nullptr;
   const std::uint8_t* next_;
   std::size_t left_;
@@ -94,6 +110,7 @@ ChunkBytes run(const std::uint8_t* data, std::size_t size, std::size_t full_size
   // One more than stated, so that the end of the data shows.
   const std::size_t limit = std::max(full_size + 1, kMaxUnstatedBytes);
   std::size_t capacity = full_size > 0 ? std::min(full_size, kFirstRoomBytes) : kFirstRoomBytes;
+  capacity += Decompressor::spareBytes(capacity);
   ChunkBytes chunk;
   // Not initialised, as a vector would be: it is written at once.
   chunk.data.reset(new std::uint8_t[capacity]);
@@ -110,6 +127,7 @@ ChunkBytes run(const std::uint8_t* data, std::size_t size, std::size_t full_size
         chunk.data.get() + chunk.size, std::min(capacity - chunk.size, kMaxStepBytes), done, whole);
   }
   chunk.complete = whole && (full_size == 0 || chunk.size == full_size);
+  chunk.copyable = chunk.complete && decompressor.hasTakenAll();
   return chunk;
 }
 
@@ -121,7 +139,12 @@ bool isKnownCompression(std::string_view compression) {
 
 ChunkBytes decompressChunk(std::string_view compression, const std::uint8_t* data, std::size_t size,
                            std::size_t full_size) {
-  return compression == "bz2" ? run<Bz2>(data, size, full_size) : run<Lz4>(data, size, full_size);
+  if (compression == "bz2") {
+    return run<Bz2>(data, size, full_size);
+  }
+  ChunkBytes chunk = run<Lz4>(data, size, full_size);
+  chunk.copyable = chunk.copyable && isRosbagLz4({reinterpret_cast<const char*>(data), size});
+  return chunk;
 }
 
 }  // namespace fast_edi

@@ -44,6 +44,9 @@ class IndexBuilder {
     if (!std::is_sorted(index_.entries.begin(), index_.entries.end(), earlier)) {
       std::stable_sort(index_.entries.begin(), index_.entries.end(), earlier);
     }
+    for (const BagIndexEntry& entry : index_.entries) {
+      index_.chunks[entry.chunk].last_time = entry.time;
+    }
     return std::move(index_);
   }
 
@@ -147,6 +150,7 @@ class IndexBuilder {
       next = findChunkRecord(file_, record.data_offset).value_or(file_.size());
       noteDamage(next, record.data_size == 0 ? "a chunk was never finished" : "a chunk is cut off");
       chunk.size = next - record.data_offset;
+      chunk.cut = true;
       last_chunk_.cut = true;
       last_chunk_.index_whole = false;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -18,6 +19,11 @@ ros::Time soundTime(std::uint32_t sec, std::uint32_t nsec) {
   return {sec, std::min(nsec, kLastNanosecond)};
 }
 
+/// As BagIndexEntry has it.
+std::uint64_t keyOf(const ros::Time& time) {
+  return std::uint64_t{time.sec} << 32 | time.nsec;
+}
+
 }  // namespace
 
 BagReader::BagReader(const std::string& path) : file_(path), index_(buildBagIndex(file_, path)) {}
@@ -26,14 +32,7 @@ bool BagReader::next(BagMessage& message) {
   while (position_ < index_.entries.size()) {
     const BagIndexEntry& entry = index_.entries[position_++];
     const BagChunk& chunk = index_.chunks[entry.chunk];
-    bool read = false;
-    if (chunk.compressed()) {
-      const ChunkBytes& bytes = decompressed(entry.chunk);
-      read = readMessage(MemorySource(bytes.data.get(), bytes.size), entry.offset, message);
-    } else {
-      read = readMessage(file_, chunk.offset + entry.offset, message);
-    }
-    if (read) {
+    if (read(entry, message)) {
       message.offset = chunk.offset + (chunk.compressed() ? 0 : entry.offset);
       return true;
     }
@@ -44,6 +43,25 @@ bool BagReader::next(BagMessage& message) {
     }
   }
   return false;
+}
+
+bool BagReader::read(const BagIndexEntry& entry, BagMessage& message) {
+  const BagChunk& chunk = index_.chunks[entry.chunk];
+  message.chunk = nullptr;
+  if (!chunk.compressed()) {
+    return readMessage(file_, chunk.offset + entry.offset, message);
+  }
+  const ChunkBytes& bytes = decompressed(entry);
+  if (!readMessage(MemorySource(bytes.data.get(), bytes.size), entry.offset, message)) {
+    return false;
+  }
+  // A time that was put right must be right in the output, too.
+  if (bytes.copyable && !chunk.cut && chunk.full_size > 0 && keyOf(message.time) == entry.time &&
+      message.time >= ros::TIME_MIN) {
+    message.chunk = &chunk;
+    message.place = static_cast<std::uint32_t>(entry.offset);
+  }
+  return true;
 }
 
 ros::Duration BagReader::duration() const {
@@ -64,20 +82,31 @@ std::string BagReader::compression() const {
   return index_.chunks.empty() ? "none" : index_.chunks.front().compression;
 }
 
-const ChunkBytes& BagReader::decompressed(std::uint32_t chunk) {
+const ChunkBytes& BagReader::decompressed(const BagIndexEntry& entry) {
   for (auto cached = cache_.begin(); cached != cache_.end(); ++cached) {
-    if (cached->chunk == chunk) {
+    if (cached->chunk == entry.chunk) {
       cache_.splice(cache_.begin(), cache_, cached);
       return cache_.front().bytes;
     }
   }
-  cache_.push_front({chunk, readChunk(file_, index_.chunks[chunk])});
+  // Those that nobody needs any more go first: the next chunk then takes memory that lies in the
+  // processor's caches.
+  for (auto cached = cache_.begin(); cached != cache_.end();) {
+    const bool is_over = index_.chunks[cached->chunk].last_time < entry.time;
+    cached = is_over ? drop(cached) : std::next(cached);
+  }
+  cache_.push_front({entry.chunk, readChunk(file_, index_.chunks[entry.chunk])});
   cached_bytes_ += cache_.front().bytes.size;
   while (cached_bytes_ > kMaxCachedBytes && cache_.size() > 1) {
-    cached_bytes_ -= cache_.back().bytes.size;
-    cache_.pop_back();
+    drop(std::prev(cache_.end()));
   }
   return cache_.front().bytes;
+}
+
+std::list<BagReader::CachedChunk>::iterator BagReader::drop(
+    std::list<CachedChunk>::iterator cached) {
+  cached_bytes_ -= cached->bytes.size;
+  return cache_.erase(cached);
 }
 
 bool BagReader::readMessage(const ByteSource& source, std::uint64_t offset, BagMessage& message) {

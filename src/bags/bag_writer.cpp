@@ -9,61 +9,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include <ros/message_traits.h>
-#include <ros/serialization.h>
-
+#include "bags/bag_content.hpp"
 #include "fast_edi/bags/bag_error.hpp"
-
-namespace fast_edi {
-
-/// A message that rosbag copies without looking into it.
-struct RawMessage {
-  const BagMessage& message;
-};
-
-}  // namespace fast_edi
-
-namespace ros {
-namespace message_traits {
-
-template <>
-struct MD5Sum<fast_edi::RawMessage> {
-  static const char* value(const fast_edi::RawMessage& raw) {
-    return raw.message.connection->md5sum.c_str();
-  }
-};
-template <>
-struct DataType<fast_edi::RawMessage> {
-  static const char* value(const fast_edi::RawMessage& raw) {
-    return raw.message.connection->datatype.c_str();
-  }
-};
-template <>
-struct Definition<fast_edi::RawMessage> {
-  static const char* value(const fast_edi::RawMessage& raw) {
-    return raw.message.connection->definition.c_str();
-  }
-};
-
-}  // namespace message_traits
-
-namespace serialization {
-
-template <>
-struct Serializer<fast_edi::RawMessage> {
-  template <typename Stream>
-  static void write(Stream& stream, const fast_edi::RawMessage& raw) {
-    if (raw.message.size > 0) {
-      std::memcpy(stream.advance(raw.message.size), raw.message.data, raw.message.size);
-    }
-  }
-  static std::uint32_t serializedLength(const fast_edi::RawMessage& raw) {
-    return raw.message.size;
-  }
-};
-
-}  // namespace serialization
-}  // namespace ros
 
 namespace fast_edi {
 namespace {
@@ -72,19 +19,12 @@ namespace fs = std::filesystem;
 
 constexpr mode_t kNewFileMode = 0666;
 
-rosbag::CompressionType compressionType(const std::string& name) {
-  if (name == "bz2") {
-    return rosbag::compression::BZ2;
-  }
-  return name == "lz4" ? rosbag::compression::LZ4 : rosbag::compression::Uncompressed;
-}
-
 bool sameFile(const std::string& a, const std::string& b) {
   std::error_code ignored;  // one that does not exist is not the same
   return fs::equivalent(a, b, ignored);
 }
 
-/// Says why a file cannot be written, which rosbag does not.
+/// \throws BagError that says why it is not
 void requireWritable(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, kNewFileMode);
   if (descriptor < 0) {
@@ -103,11 +43,7 @@ BagWriter::BagWriter(const std::string& path, const std::vector<std::string>& in
   if (unfinished_ == UnfinishedBag::kRemove) {
     claim();
   }
-  bag_ = std::make_unique<rosbag::Bag>();
-  guarded([&] {
-    bag_->open(active_path_, rosbag::bagmode::Write);
-    bag_->setCompression(compressionType(compression));
-  });
+  guarded([&] { content_ = std::make_unique<BagContent>(active_path_, compression); });
 }
 
 void BagWriter::requireFree(const std::vector<std::string>& inputs, bool overwrite) const {
@@ -134,13 +70,11 @@ void BagWriter::claim() {
 }
 
 BagWriter::~BagWriter() {
-  if (bag_) {
+  if (content_) {
     try {
-      bag_->close();
+      content_->close();
     } catch (const std::exception&) {
-      // Somebody else's error is on its way already. rosbag's destructor would try again, throw
-      // and so end the program: it must not run.
-      static_cast<void>(bag_.release());
+      // Somebody else's error is on its way already.
     }
   }
   if (lock_.isHeld()) {
@@ -149,16 +83,23 @@ BagWriter::~BagWriter() {
   }
 }
 
+void BagWriter::copyChunksOf(const ChunkSource& source) {
+  content_->copyChunksOf(source);
+}
+
 void BagWriter::copy(const BagMessage& message) {
+  guarded([&] { content_->copy(message); });
+}
+
+void BagWriter::writeBytes(const BagConnection& connection, const ros::Time& time) {
   guarded([&] {
-    bag_->write(message.connection->topic, writableTime(message.time), RawMessage{message},
-                message.connection->header);
+    content_->write(connection, time, bytes_.data(), static_cast<std::uint32_t>(bytes_.size()));
   });
 }
 
 void BagWriter::close() {
-  guarded([&] { bag_->close(); });
-  bag_.reset();
+  guarded([&] { content_->close(); });
+  content_.reset();
   std::error_code error;
   fs::rename(active_path_, path_, error);
   if (error) {
@@ -167,17 +108,21 @@ void BagWriter::close() {
   lock_.release();
 }
 
-void BagWriter::fail(const std::exception& error) {
-  const int cause = errno;
-  // As in the destructor: closing would throw again.
-  static_cast<void>(bag_.release());
-  std::string what = "cannot write " + active_path_ + ": " + error.what();
-  if (cause != 0) {
-    what += std::string(" (") + std::strerror(cause) + ")";
+template <typename Action>
+void BagWriter::guarded(Action action) {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    fail(error);
   }
-  throw BagError(what + (unfinished_ == UnfinishedBag::kRemove
-                             ? "; what was written so far is removed"
-                             : "; what was written so far is left there, without an index"));
+}
+
+void BagWriter::fail(const std::exception& error) {
+  content_.reset();
+  throw BagError("cannot write " + active_path_ + ": " + error.what() +
+                 (unfinished_ == UnfinishedBag::kRemove
+                      ? "; what was written so far is removed"
+                      : "; what was written so far is left there, without an index"));
 }
 
 }  // namespace fast_edi

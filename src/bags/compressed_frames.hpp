@@ -31,6 +31,7 @@ class CompressedFrames : public MessageSource {
   bool countsMessages() const override { return source_->countsMessages(); }
   std::string compression() const override { return source_->compression(); }
   std::uint64_t fileSize() const override { return source_->fileSize(); }
+  std::optional<ChunkSource> chunks() const override { return source_->chunks(); }
   bool knowsExposures() const override { return source_->knowsExposures(); }
   std::optional<BiasConfiguration> biases() const override { return source_->biases(); }
 

@@ -1,7 +1,10 @@
 /// BagDeblurrer on several threads.
 #include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -42,7 +45,10 @@ class BagDeblurrerThreads : public ::testing::Test {
     Result result;
     const std::string output = directory_.file("out.bag");
     const auto reader = openMessages(input_);
-    BagWriter writer(output, {input_}, "none", true);
+    BagWriter writer(output, {input_}, reader->compression(), true);
+    if (reader->compression() != "none") {
+      writer.copyChunksOf(*reader->chunks());
+    }
     BagDeblurrer deblurrer(*reader, &writer, TopicNames(), parameters_,
                            [](std::uint64_t, std::uint64_t) {});
     deblurrer.setThreads(threads);
@@ -75,6 +81,20 @@ class BagDeblurrerThreads : public ::testing::Test {
   const std::string input_ = directory_.file("in.bag");
   LoadedParameters parameters_;
 };
+
+TEST_F(BagDeblurrerThreads, GiveTheBitsOfOneWhereChunksAreCopied) {
+  const std::string plain = directory_.file("plain.bag");
+  std::filesystem::rename(input_, plain);
+  {
+    rosbag::Bag bag(input_, rosbag::bagmode::Write);
+    bag.setCompression(rosbag::compression::LZ4);
+    const rosbag::Bag source(plain);
+    for (const rosbag::MessageInstance& message : rosbag::View(source)) {
+      bag.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
+    }
+  }
+  expectTheSame();
+}
 
 TEST_F(BagDeblurrerThreads, GiveTheBitsOfOne) {
   expectTheSame();

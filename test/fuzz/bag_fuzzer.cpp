@@ -55,6 +55,7 @@ void deblur(const std::string& input, bool writes) {
   std::optional<fast_edi::BagWriter> writer;
   if (writes) {
     writer.emplace(outputPath(), std::vector<std::string>{input}, reader.compression(), true);
+    writer->copyChunksOf(*reader.chunks());
   }
   fast_edi::BagDeblurrer deblurrer(reader, writer ? &*writer : nullptr, topics, parameters(),
                                    [](std::uint64_t, std::uint64_t) {});

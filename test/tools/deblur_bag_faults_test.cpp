@@ -33,6 +33,7 @@ const std::string kSlow =
     " contrast_threshold_on:=0.3 contrast_threshold_off:=0.25 latent_images:=200";
 /// Some of rosbag's chunks.
 constexpr std::uintmax_t kSomeBytes = 3'000'000;
+constexpr std::uint32_t kChunkBytes = 10'000;
 /// The same as a limit of the shell's, in its units of 512 bytes.
 const std::string kLimited = "ulimit -f 6000; ";
 
@@ -42,10 +43,23 @@ class DeblurBagFaults : public ::testing::Test {
       : input_(path("in.bag")), output_(path("out.bag")), active_(output_ + ".active") {
     test::RecordingSettings settings;
     settings.frames = 100;
-    test::writeBag(test::makeRecording(settings), "/dvs", input_);
+    const std::string recorded = path("recorded.bag");
+    test::writeBag(test::makeRecording(settings), "/dvs", recorded);
+    cut(recorded);
     before_ = contents(input_);
   }
   void TearDown() override { EXPECT_TRUE(contents(input_) == before_) << "the input was touched"; }
+
+  /// Into compressed chunks so small that many are copied before the output is disturbed.
+  void cut(const std::string& recorded) const {
+    rosbag::Bag bag(input_, rosbag::bagmode::Write);
+    bag.setCompression(rosbag::compression::LZ4);
+    bag.setChunkThreshold(kChunkBytes);
+    const rosbag::Bag source(recorded);
+    for (const rosbag::MessageInstance& message : rosbag::View(source)) {
+      bag.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
+    }
+  }
 
   std::string path(const std::string& name) const { return directory_.file(name); }
   std::string toBag() const {
@@ -111,8 +125,8 @@ TEST_F(DeblurBagFaults, WhatKillLeavesCanBeReindexed) {
   expectThatReindexOpensTheRest();
 }
 
-TEST_F(DeblurBagFaults, WhatKillLeavesCanBeReindexedWhenCompressed) {
-  EXPECT_EQ(disturb(toBag() + " --compression lz4", active_, SIGKILL), -1);
+TEST_F(DeblurBagFaults, WhatKillLeavesCanBeReindexedWhenNotCompressed) {
+  EXPECT_EQ(disturb(toBag() + " --compression none", active_, SIGKILL), -1);
   expectThatReindexOpensTheRest();
 }
 

@@ -14,6 +14,9 @@ struct ChunkBytes {
   std::unique_ptr<std::uint8_t[]> data;
   std::size_t size = 0;   ///< bytes that were decompressed
   bool complete = false;  ///< all of them
+  /// Complete, and rosbag's own decoders agree: they want nothing behind the compressed data, and
+  /// know but a part of what lz4's frames may have.
+  bool copyable = false;
 };
 
 /// True for the compressions that rosbag knows: "none", "bz2", "lz4".

@@ -40,6 +40,8 @@ struct BagChunk {
   std::uint64_t size = 0;       ///< in the file
   std::uint32_t full_size = 0;  ///< decompressed, as stated; 0 = not known
   std::string compression;      ///< "none", "bz2" or "lz4"
+  bool cut = false;             ///< it ends early: `size` is a guess
+  std::uint64_t last_time = 0;  ///< of its messages in the index, as BagIndexEntry has it
 
   bool compressed() const { return compression != "none"; }
 };

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <list>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,9 @@ class BagReader : public MessageSource {
   /// Of the first chunk: "none", "bz2" or "lz4".
   std::string compression() const override;
   std::uint64_t fileSize() const override { return file_.size(); }
+  std::optional<ChunkSource> chunks() const override {
+    return ChunkSource{file_, index_.connections};
+  }
 
  private:
   struct CachedChunk {
@@ -60,7 +64,9 @@ class BagReader : public MessageSource {
     ChunkBytes bytes;
   };
 
-  const ChunkBytes& decompressed(std::uint32_t chunk);
+  const ChunkBytes& decompressed(const BagIndexEntry& entry);
+  std::list<CachedChunk>::iterator drop(std::list<CachedChunk>::iterator cached);
+  bool read(const BagIndexEntry& entry, BagMessage& message);
   bool readMessage(const ByteSource& source, std::uint64_t offset, BagMessage& message);
 
   FileSource file_;

@@ -2,18 +2,21 @@
 /// Writes a bag that appears under its name only when it is complete.
 #pragma once
 
-#include <cerrno>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include <ros/message_traits.h>
+#include <ros/serialization.h>
 #include <ros/time.h>
-#include <rosbag/bag.h>
 
 #include "fast_edi/bags/file_lock.hpp"
 #include "fast_edi/bags/message_source.hpp"
 
 namespace fast_edi {
+
+class BagContent;
 
 /// What becomes of PATH.active when the bag was not completed.
 enum class UnfinishedBag {
@@ -23,7 +26,10 @@ enum class UnfinishedBag {
   kRemove,
 };
 
-/// rosbag::Bag writing to PATH.active, renamed to PATH by close().
+/// Writes to PATH.active, renamed to PATH by close().
+///
+/// Not by rosbag::Bag: that compresses every message, also those which lie in the input compressed
+/// the same way already. Memory: a chunk of 768 kB, or the largest message.
 class BagWriter {
  public:
   /// \param inputs the recordings that are being read: refused as an output
@@ -38,7 +44,15 @@ class BagWriter {
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
 
+  /// From now on, copy() takes whole chunks of the source as they are, where they are compressed as
+  /// the output. They do not lie in the order of time among the others then, as rosbag's readers
+  /// do not expect it either.
+  /// \param source of all messages that are copied; must outlive this object
+  /// \pre nothing was written yet
+  void copyChunksOf(const ChunkSource& source);
+
   /// The same bytes under the same topic, type and connection header at the same record time.
+  /// \param message of the same source as all others
   /// \throws BagError
   void copy(const BagMessage& message);
 
@@ -46,7 +60,16 @@ class BagWriter {
   /// \throws BagError
   template <typename Message>
   void write(const std::string& topic, const ros::Time& time, const Message& message) {
-    guarded([&] { bag_->write(topic, writableTime(time), message); });
+    namespace traits = ros::message_traits;
+    bytes_.resize(ros::serialization::serializationLength(message));
+    ros::serialization::OStream stream(bytes_.data(), static_cast<std::uint32_t>(bytes_.size()));
+    stream.next(message);
+    BagConnection connection;
+    connection.topic = topic;
+    connection.datatype = traits::datatype(message);
+    connection.md5sum = traits::md5sum(message);
+    connection.definition = traits::definition(message);
+    writeBytes(connection, time);
   }
 
   /// Writes the index and gives the file its name.
@@ -54,20 +77,9 @@ class BagWriter {
   void close();
 
  private:
-  /// rosbag refuses record times before the first nanosecond.
-  static ros::Time writableTime(const ros::Time& time) {
-    return time < ros::TIME_MIN ? ros::TIME_MIN : time;
-  }
-
+  void writeBytes(const BagConnection& connection, const ros::Time& time);
   template <typename Action>
-  void guarded(Action action) {
-    errno = 0;
-    try {
-      action();
-    } catch (const std::exception& error) {
-      fail(error);
-    }
-  }
+  void guarded(Action action);
   [[noreturn]] void fail(const std::exception& error);
 
   void requireFree(const std::vector<std::string>& inputs, bool overwrite) const;
@@ -77,7 +89,8 @@ class BagWriter {
   const std::string active_path_;
   const UnfinishedBag unfinished_;
   FileLock lock_;  ///< of active_path_, while it is to be removed
-  std::unique_ptr<rosbag::Bag> bag_;
+  std::unique_ptr<BagContent> content_;
+  std::vector<std::uint8_t> bytes_;  ///< of a message of ours
 };
 
 }  // namespace fast_edi

@@ -22,6 +22,16 @@ struct BagMessage {
   std::uint32_t size = 0;
   std::uint64_t offset = 0;  ///< in its file; of its chunk where that is compressed
   bool decoded = false;      ///< made of the message before it: not in the recording itself
+  /// A compressed one that the message may be copied with; null: none. See MessageSource::chunks().
+  const BagChunk* chunk = nullptr;
+  std::uint32_t place = 0;  ///< of the message's record in the decompressed chunk
+};
+
+/// A bag whose compressed chunks can be copied into another one as they are. (Others could be, too,
+/// but it takes as long as writing their messages.)
+struct ChunkSource {
+  const ByteSource& file;
+  const std::map<std::uint32_t, BagConnection>& connections;  ///< of the ids that the chunks use
 };
 
 class MessageSource {
@@ -47,6 +57,9 @@ class MessageSource {
   /// Of a bag: "none", "bz2" or "lz4".
   virtual std::string compression() const { return "none"; }
   virtual std::uint64_t fileSize() const = 0;
+  /// Where the chunks of messages are; nothing: they cannot be copied. May be read by other threads
+  /// than next().
+  virtual std::optional<ChunkSource> chunks() const { return std::nullopt; }
   /// The stamp of each frame is the middle of an exposure that was recorded.
   virtual bool knowsExposures() const { return false; }
   /// Bias settings of the camera, where the recording holds them.

@@ -58,7 +58,10 @@ po::options_description describeOptions(Arguments& arguments) {
       "output", po::value(&topics.output)->value_name("NAMESPACE"),
       "namespace of the deblurred topics; by default `deblurred` beside --image")(
       "compression", po::value(&arguments.compression)->default_value("same")->value_name("KIND"),
-      "of the output: none, bz2, lz4, or the same as the input's");
+      "of the output: none, bz2, lz4, or the same as the input's")(
+      "rewrite", po::bool_switch(&arguments.rewrite),
+      "write every message anew, in the order of record times; by default, chunks of a bag that "
+      "are compressed as the output are copied as they are, which is faster");
   options.add_options()(
       "threads", po::value(&arguments.threads)->default_value(defaultThreads())->value_name("N"),
       "cores to work on at a time; the output is the same for any number");

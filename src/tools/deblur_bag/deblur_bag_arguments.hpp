@@ -18,6 +18,7 @@ struct Arguments {
   std::string output_folder;  ///< each input is a recording of its own
   std::string config;
   std::string compression;
+  bool rewrite = false;  ///< no chunk is copied as it is
   TopicNames topics;
   std::vector<std::string> overrides;
   bool overwrite = false;

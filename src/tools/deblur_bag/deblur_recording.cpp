@@ -3,6 +3,7 @@
 #include <csignal>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -109,6 +110,10 @@ RecordingOutcome deblurRecording(const Arguments& arguments) {
       arguments.compression == "same" ? reader->compression() : arguments.compression;
   const bool is_one_of_many = !arguments.output_folder.empty();
   DeblurOutputs outputs(arguments, compression);
+  const std::optional<ChunkSource> chunks = reader->chunks();
+  if (outputs.bag() != nullptr && chunks && !arguments.rewrite) {
+    outputs.bag()->copyChunksOf(*chunks);
+  }
   const BagDeblurReport report = deblur(*reader, arguments, parameters, outputs);
   const bool is_written = !(report.interrupted && is_one_of_many);
   if (is_written) {

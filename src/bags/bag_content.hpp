@@ -1,0 +1,47 @@
+/// \file
+/// What goes into a bag: chunks that are copied, and new ones for all other messages.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <ros/time.h>
+
+#include "bags/bag_file.hpp"
+#include "bags/copied_chunks.hpp"
+#include "bags/new_chunk.hpp"
+#include "bags/written_connections.hpp"
+#include "fast_edi/bags/message_source.hpp"
+
+namespace fast_edi {
+
+/// All throw BagError when the file cannot be written.
+class BagContent {
+ public:
+  /// \param compression "none", "bz2" or "lz4"
+  BagContent(const std::string& path, const std::string& compression);
+
+  /// \pre nothing was written
+  void copyChunksOf(const ChunkSource& source);
+
+  void copy(const BagMessage& message);
+  /// \param connection with all but its id and header
+  void write(const BagConnection& connection, const ros::Time& time, const std::uint8_t* data,
+             std::uint32_t size);
+  void close();
+
+ private:
+  void add(const BagConnection& connection, const ros::Time& time, const std::uint8_t* data,
+           std::uint32_t size);
+  void endChunk();
+
+  const std::string compression_;
+  BagFile file_;
+  const ByteSource* source_ = nullptr;  ///< of chunks to be copied
+  CopiedChunks copied_;
+  const CopiedChunks::Write write_copied_;
+  NewChunk chunk_;
+  WrittenConnections connections_;
+};
+
+}  // namespace fast_edi

@@ -1,0 +1,36 @@
+/// \file
+/// Chunks of a bag on their way into another one, as they are.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+
+#include "bags/chunk_index.hpp"
+#include "fast_edi/bags/message_source.hpp"
+
+namespace fast_edi {
+
+/// Collects the messages of each chunk until all have come; only these will be in its index. Chunks
+/// are given out in the order of the input's file as far as their times overlap: readers of bags
+/// take messages of the same time in that order.
+class CopiedChunks {
+ public:
+  using Write = std::function<void(const BagChunk& chunk, const ChunkIndex& index)>;
+
+  /// Writes the chunks that end before the message, then adds it to its own.
+  /// \pre it has a chunk, and is not earlier than the one before
+  void add(const BagMessage& message, const Write& write);
+  /// All that are left, with those of their messages that have come.
+  void finish(const Write& write);
+
+ private:
+  struct Begun {
+    const BagChunk* chunk = nullptr;
+    ChunkIndex index;
+  };
+
+  std::map<std::uint64_t, Begun> begun_;  ///< by the place in the input
+};
+
+}  // namespace fast_edi
