@@ -18,8 +18,8 @@ class UnsetAllocator : public std::allocator<T> {
   template <typename U>
   UnsetAllocator(const UnsetAllocator<U>& /*other*/) {}  // NOLINT(google-explicit-constructor)
   template <typename U>
-  struct rebind {  // NOLINT(readability-identifier-naming): the standard's name
-    using other = UnsetAllocator<U>;
+  struct rebind {                     // NOLINT(readability-identifier-naming): the standard's name
+    using other = UnsetAllocator<U>;  // NOLINT(readability-identifier-naming)
   };
 
   template <typename U>

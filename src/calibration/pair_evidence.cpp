@@ -79,8 +79,8 @@ class Summation {
   const LevelModel& level_;
   float rate_[kPhases];  ///< of the weight over time, by phase [1/ns]
   std::int64_t origin_ns_[kPhases];
-  float step_[2];            ///< by polarity [natural log]
-  float slope_[kPhases][2];  ///< by phase and polarity [1/ms]
+  float step_[2];              ///< by polarity [natural log]
+  float slope_[kPhases][2]{};  ///< by phase and polarity [1/ms]
   LevelInstant first_reference_;
   LevelInstant second_reference_;
   float mean_lead_;
@@ -108,7 +108,8 @@ void PairEvidence::gather(const PixelEventLists& lists, const ExposurePair& pair
   const Summation summation(pair, thresholds, level);
   const RowOfPixel row_of(size_.width);
   const bool has_ramps = !level.isStaircase();
-  std::array<std::uint32_t, kBlock + 1> wanted;  // one more: each event is written, not each counts
+  std::array<std::uint32_t, kBlock + 1>
+      wanted{};  // one more: each event is written, not each counts
   const std::uint64_t end = lists.lowerBound(pair.second.end_ns);
   for (std::uint64_t sequence = lists.lowerBound(pair.first.start_ns); sequence < end;) {
     const PackedEventSpan span = lists.span(sequence, end);

@@ -64,7 +64,7 @@ void encodeWireEvent(const Event& event, std::vector<std::uint8_t>& bytes) {
 
 void encodeWireEvents(const Event* events, std::size_t count, std::vector<std::uint8_t>& bytes) {
   // By blocks, which are appended as they are: appended room is set to zero first.
-  std::array<std::uint8_t, kBlockEvents * kWireEventBytes> block;
+  std::array<std::uint8_t, kBlockEvents * kWireEventBytes> block{};
   // The second's part is found once for all events within it: a division takes longer than the
   // rest.
   std::int64_t second_ns = 0;

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "fast_edi/base/deblur_counters.hpp"
 #include "calibration/online_calibration.hpp"
+#include "fast_edi/base/deblur_counters.hpp"
 #include "fast_edi/events/event_stream.hpp"
 #include "fast_edi/parameters/parameters.hpp"
 
