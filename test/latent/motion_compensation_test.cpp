@@ -120,6 +120,33 @@ TEST(MotionCompensation, LeavesWhatDiffersByMoreThanNoise) {
   }
 }
 
+TEST(MotionCompensation, WeighsByTheMeanDifferenceOfFiveByFivePixels) {
+  constexpr float kLevel = 100.0F * 256.0F;  // [16-bit DN]
+  constexpr float kLower = 94.0F * 256.0F;
+  const int x = kSize.width / 2;
+  const int y = kSize.height / 2;
+  const Image reference =
+      imageOf(std::vector<float>(kSize.pixelCount(), kLevel), PixelFormat::kMono16);
+  // Of the pixel at (x, y), where all pixels that lie so far on each side are lower.
+  const auto weighed = [&](int left, int right, int above, int below) {
+    std::vector<float> plane(kSize.pixelCount(), kLevel);
+    for (int v = y - above; v <= y + below; ++v) {
+      for (int u = x - left; u <= x + right; ++u) {
+        plane[indexOf(u, v)] = kLower;
+      }
+    }
+    return compensated(reference, imageOf(plane, PixelFormat::kMono16)).plane()[indexOf(x, y)];
+  };
+  const float level = weighed(2, 2, 2, 2);
+  EXPECT_GT(level, kLower + 256.0F);
+  EXPECT_LT(level, kLevel - 256.0F);
+  EXPECT_EQ(weighed(9, 9, 9, 9), level);
+  for (const float less :
+       {weighed(1, 2, 2, 2), weighed(2, 1, 2, 2), weighed(2, 2, 1, 2), weighed(2, 2, 2, 1)}) {
+    EXPECT_GT(less, level);
+  }
+}
+
 TEST(MotionCompensation, LeavesWhatComesFromOutside) {
   const double shift_px = 6.0;
   const Image noisy = imageOf(wavePlane(shift_px, 4.0, 3));
