@@ -132,7 +132,7 @@ class TrustMapTest : public ::testing::Test {
       }
     }
     solver_.solve({blurry.data(), latent.data(), mean_counts.data(), kNoise_dn, kOffset_dn}, blur_);
-    trust_.measure({motion_, changes_, event_share_, kContrast, kNoise_dn, kOffset_dn},
+    trust_.measure({motion_, changes_, event_share_, visible_, kNoise_dn, kOffset_dn},
                    blur_.layout(), solver_);
   }
 
@@ -141,6 +141,7 @@ class TrustMapTest : public ::testing::Test {
   float trustAt(int x, int y) const { return trust_.trust()[indexOf(x, y, kSize.width)]; }
 
   float event_share_ = 1.0F;
+  float visible_ = kContrast;  ///< changes above it are compared
   ImageMotion motion_;
   MovingBlur blur_;
   EventChanges changes_;
@@ -152,8 +153,10 @@ class TrustMapTest : public ::testing::Test {
 class Reference {
  public:
   Reference(const ImageMotion& motion, const EventChanges& changes, float event_share,
-            const SceneLayout& layout, const ResidualSolver& solved)
-      : event_share_(static_cast<double>(event_share)), layout_(layout) {
+            float visible, const SceneLayout& layout, const ResidualSolver& solved)
+      : event_share_(static_cast<double>(event_share)),
+        visible_(static_cast<double>(visible)),
+        layout_(layout) {
     const auto squares = [&](const std::vector<float>& residual) {
       return boxMeans(planeOf([&](int x, int y) {
                         return meanOf(x, y, [&](int u, int v) {
@@ -238,9 +241,9 @@ class Reference {
           const double around =
               std::abs(b - a) + std::abs(c - a) + std::abs(d - c) + std::abs(d - b);
           const double larger = std::max(std::abs(predicted), std::abs(said));
-          if (larger > kContrast) {
+          if (larger > visible_) {
             could.at(x, y) = 1.0;
-            if (std::abs(predicted - said) > kContrast + 0.3 * larger + 0.25 * around) {
+            if (std::abs(predicted - said) > visible_ + 0.3 * larger + 0.25 * around) {
               does.at(x, y) = 1.0;
             }
           }
@@ -271,15 +274,25 @@ class Reference {
   }
 
   double event_share_;
+  double visible_;
   SceneLayout layout_;
   Plane trusted_;
 };
 
 TEST_F(TrustMapTest, IsTheOneOfASlowReference) {
-  for (const auto& [still, event_share] : {std::pair{false, 1.0F}, {true, 1.0F}, {false, 0.7F}}) {
-    event_share_ = event_share;
-    measure(still);
-    const Reference reference(motion_, changes_, event_share, blur_.layout(), solver_);
+  struct Case {
+    bool still;
+    float event_share;
+    float visible;
+  };
+  for (const Case& one : {Case{false, 1.0F, kContrast},
+                          {true, 1.0F, kContrast},
+                          {false, 0.7F, kContrast},
+                          {true, 1.0F, 3.0F * kContrast}}) {
+    event_share_ = one.event_share;
+    visible_ = one.visible;
+    measure(one.still);
+    const Reference reference(motion_, changes_, event_share_, visible_, blur_.layout(), solver_);
     int apart = 0;
     int between = 0;
     for (int y = 0; y < 2 * kHalf.height; ++y) {
