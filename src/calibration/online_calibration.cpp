@@ -149,7 +149,7 @@ CalibrationOutcome OnlineCalibration::addFrame(const Frame& frame, const CameraR
   previous_.reference_ns = frame.reference_ns;
   if (outcome == CalibrationOutcome::kFitted) {
     useless_pairs_ = 0;
-    resting_ = std::max(resting_, fits_ >= kInitialFits ? kRestFrames : 0);
+    resting_ = std::max(resting_, fits_ >= settings_.initial_fits ? kRestFrames : 0);
   } else if (outcome != CalibrationOutcome::kNoPair && ++useless_pairs_ >= kMaxUselessPairs) {
     resting_ = std::max(resting_, kRestFrames);
   }
@@ -204,12 +204,16 @@ void OnlineCalibration::loadLogLatent(const Frame& frame, const CameraResponse& 
   }
 }
 
-/// All rows, or every n-th, so that about Settings::most_events are used. The cost of passing by
-/// all of them is spread over the frames that follow.
+/// All rows, or every n-th of them, so that about as many events are used as the settings say. All
+/// are passed by all the same: what that costs is spread over the frames that follow.
 RowSample OnlineCalibration::nextRows(std::uint64_t events) {
-  resting_ = static_cast<int>(events / settings_.most_passed);
-  const std::uint64_t every =
-      std::max<std::uint64_t>(1, (events + settings_.most_events / 2) / settings_.most_events);
+  if (events > settings_.most_events) {
+    resting_ = static_cast<int>(events / settings_.most_events);
+  }
+  const std::uint64_t most = fits_ < settings_.initial_fits
+                                 ? settings_.most_events
+                                 : std::min(settings_.most_events, settings_.settled_events);
+  const std::uint64_t every = std::max<std::uint64_t>(1, (events + most / 2) / most);
   const int step = static_cast<int>(std::min(every, static_cast<std::uint64_t>(size_.height)));
   return {next_row_++ % step, step};
 }

@@ -33,11 +33,12 @@
 /// reaches half of its height. An offset between the clocks is no low-pass: it belongs into
 /// `time_offset`.
 ///
-/// Each pair is used until kInitialFits were informative, then one in kRestFrames frames; also
-/// after kMaxUselessPairs consecutive pairs that were not. Of a pair of more than
-/// Settings::most_events, every n-th row is used, n rows later for the next pair: some thousand
-/// pixels determine three numbers. Since all events are passed by all the same, the next pair comes
-/// later by a frame for each Settings::most_passed.
+/// Each pair is used until Settings::initial_fits were informative, then one in kRestFrames frames;
+/// also after kMaxUselessPairs consecutive pairs that were not. Of a pair of more than
+/// Settings::most_events, every n-th row is used, one row further for the next pair, which comes
+/// later by a frame for each most_events. After the first fits every n-th row does from
+/// Settings::settled_events on: many pairs are in the sums by then. Before, a part of the rows
+/// gives thresholds and delays that cost up to 1 dB in single frames.
 ///
 /// A pair whose frames do not change as its events say (cosine below 0.8 over the informative
 /// pixels) teaches nothing: its events are wrong, not the parameters.
@@ -79,16 +80,16 @@ enum class CalibrationOutcome {
 
 class OnlineCalibration {
  public:
-  static constexpr int kInitialFits = 20;
   static constexpr int kRestFrames = 10;
   static constexpr int kMaxUselessPairs = 5;
 
   struct Settings {
-    bool contrast = true;                   ///< learn the thresholds
-    bool delay = true;                      ///< learn the delay
-    std::uint64_t most_events = 250'000;    ///< used of a pair, about
-    std::uint64_t most_passed = 2'000'000;  ///< of a pair, without a pause after it
-    LevelModel level = {};                  ///< that the gains are made with
+    bool contrast = true;                    ///< learn the thresholds
+    bool delay = true;                       ///< learn the delay
+    std::uint64_t most_events = 2'000'000;   ///< of a pair
+    std::uint64_t settled_events = 250'000;  ///< same, after the first fits
+    int initial_fits = 20;                   ///< from consecutive pairs
+    LevelModel level = {};                   ///< that the gains are made with
   };
 
   /// A deblurred frame. Times are event times: shifted by time offset and delay already.

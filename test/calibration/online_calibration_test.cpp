@@ -195,6 +195,18 @@ TEST(OnlineCalibration, APartOfManyEventsIsEnough) {
   EXPECT_NEAR(found.thresholds.off / kTrue.off, 1.0, 0.05);
 }
 
+TEST(OnlineCalibration, APartOfTheEventsIsEnoughAfterTheFirstFits) {
+  OnlineCalibration::Settings settings{true, false};
+  settings.initial_fits = 0;
+  const Calibration given{{0.8 * kTrue.on, 1.2 * kTrue.off}};
+  const Calibration all = calibrated(RampScene(0), given, settings);
+  settings.settled_events = 2000;
+  const Calibration some = calibrated(RampScene(0), given, settings);
+  EXPECT_NEAR(some.thresholds.on / kTrue.on, 1.0, 0.05);
+  EXPECT_NEAR(some.thresholds.off / kTrue.off, 1.0, 0.05);
+  EXPECT_FALSE(some.thresholds == all.thresholds) << "all events were used";
+}
+
 TEST(OnlineCalibration, StaysWithinItsLimits) {
   const Calibration found =
       calibrated(RampScene(0), {{2.5 * kTrue.on, 0.4 * kTrue.off}}, {true, false});
@@ -290,7 +302,7 @@ TEST_F(OnlineCalibrationPair, RestsWhenNothingIsToBeLearned) {
 TEST_F(OnlineCalibrationPair, RestsAfterAPairOfManyEventsInProportion) {
   eventsIn(0, kPeriod_ns + kExposure_ns);
   const std::uint64_t events = lists.lowerBound(kPeriod_ns + kExposure_ns);
-  calibration = OnlineCalibration(kSize, {kTrue}, {true, true, events, events / 3});
+  calibration = OnlineCalibration(kSize, {kTrue}, {true, true, events / 3});
   addFrame(0);
   addFrame(kPeriod_ns);
   for (int i = 0; i < 3; ++i) {
