@@ -27,12 +27,20 @@ class RowOfPixel {
   std::uint64_t factor_;
 };
 
+/// Lets the pixel of an event that is soon to be summed up come into the cache.
+void fetch(const PackedEventSpan& events, std::size_t i, PairEvidence::Pixel* pixels) {
+  __builtin_prefetch(pixels + (events.data[i].code >> 1), 1);
+}
+
+}  // namespace
+
 /// Adds the events of one pair to the pixels.
-class Summation {
+class PairEvidence::Summation {
  public:
   Summation(const ExposurePair& pair, const ContrastThresholds& thresholds, const LevelModel& level)
       : pair_(pair),
         level_(level),
+        has_ramps_(!level.isStaircase()),
         rate_{1.0F / static_cast<float>(pair.first.length()), 0.0F,
               -1.0F / static_cast<float>(pair.second.length())},
         origin_ns_{pair.first.start_ns, 0, pair.second.end_ns},
@@ -49,14 +57,18 @@ class Summation {
     }
   }
 
-  void add(std::int64_t t_ns, std::uint16_t ticks, std::uint32_t on,
-           PairEvidence::Pixel& pixel) const {
+  void add(const PackedEventSpan& span, std::size_t i, Pixel* pixels) const {
     constexpr float kConstant[kPhases] = {0.0F, 1.0F, 0.0F};
+    const PackedEvent& event = span.data[i];
+    const std::int64_t t_ns = span.base_ns + static_cast<std::int64_t>(event.dt_ns);
+    const std::uint16_t ticks = has_ramps_ ? span.intervals[i] : std::uint16_t{0};
+    const std::uint32_t on = event.code & 1u;
     const std::int64_t mean_ns =
         t_ns - static_cast<std::int64_t>(mean_lead_ * static_cast<float>(level_.rampBefore(ticks)));
     const std::size_t phase = phaseOf(mean_ns);
     const float weight = std::max(
         0.0F, static_cast<float>(mean_ns - origin_ns_[phase]) * rate_[phase] + kConstant[phase]);
+    Pixel& pixel = pixels[event.code >> 1];
     pixel.weight[on] += weight;
     pixel.slope += slope_[phase][on];
     pixel.count += 1.0F;
@@ -75,8 +87,9 @@ class Summation {
     return t_ns < pair_.first.end_ns ? 0 : t_ns < pair_.second.start_ns ? 1 : 2;
   }
 
-  const ExposurePair& pair_;
-  const LevelModel& level_;
+  ExposurePair pair_;
+  LevelModel level_;
+  bool has_ramps_;
   float rate_[kPhases];  ///< of the weight over time, by phase [1/ns]
   std::int64_t origin_ns_[kPhases];
   float step_[2];              ///< by polarity [natural log]
@@ -85,8 +98,6 @@ class Summation {
   LevelInstant second_reference_;
   float mean_lead_;
 };
-
-}  // namespace
 
 PairEvidence::PairEvidence(SensorSize size)
     : size_(size), is_wanted_(static_cast<std::size_t>(size.height)), pixels_(size.pixelCount()) {}
@@ -106,30 +117,47 @@ void PairEvidence::gather(const PixelEventLists& lists, const ExposurePair& pair
                           const RowSample& rows) {
   clear(rows);
   const Summation summation(pair, thresholds, level);
-  const RowOfPixel row_of(size_.width);
-  const bool has_ramps = !level.isStaircase();
-  std::array<std::uint32_t, kBlock + 1>
-      wanted{};  // one more: each event is written, not each counts
   const std::uint64_t end = lists.lowerBound(pair.second.end_ns);
   for (std::uint64_t sequence = lists.lowerBound(pair.first.start_ns); sequence < end;) {
     const PackedEventSpan span = lists.span(sequence, end);
-    for (std::size_t from = 0; from < span.count; from += kBlock) {
-      const std::size_t to = std::min(from + kBlock, span.count);
-      std::size_t count = 0;
-      for (std::size_t i = from; i < to; ++i) {
-        wanted[count] = static_cast<std::uint32_t>(i);
-        count += is_wanted_[row_of(span.data[i].code >> 1)];
-      }
-      for (std::size_t k = 0; k < count; ++k) {
-        const std::uint32_t coming = wanted[std::min(k + kPrefetchDistance, count - 1)];
-        __builtin_prefetch(pixels_.data() + (span.data[coming].code >> 1), 1);
-        const PackedEvent& event = span.data[wanted[k]];
-        summation.add(span.base_ns + static_cast<std::int64_t>(event.dt_ns),
-                      has_ramps ? span.intervals[wanted[k]] : std::uint16_t{0}, event.code & 1u,
-                      pixels_[event.code >> 1]);
-      }
+    if (rows.step == 1) {
+      addAll(span, summation);
+    } else {
+      addWanted(span, summation);
     }
     sequence += span.count;
+  }
+}
+
+// Both copy what they read, so that the sums written cannot be taken for a change of it.
+
+void PairEvidence::addAll(const PackedEventSpan& span, const Summation& summation) {
+  const Summation local = summation;
+  Pixel* const pixels = pixels_.data();
+  const PackedEventSpan events = span;
+  for (std::size_t i = 0; i < events.count; ++i) {
+    fetch(events, std::min(i + kPrefetchDistance, events.count - 1), pixels);
+    local.add(events, i, pixels);
+  }
+}
+
+void PairEvidence::addWanted(const PackedEventSpan& span, const Summation& summation) {
+  const Summation local = summation;
+  Pixel* const pixels = pixels_.data();
+  const PackedEventSpan events = span;
+  const RowOfPixel row_of(size_.width);
+  std::array<std::uint32_t, kBlock + 1> wanted{};  // one more: each is written, not each counts
+  for (std::size_t from = 0; from < events.count; from += kBlock) {
+    const std::size_t to = std::min(from + kBlock, events.count);
+    std::size_t count = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      wanted[count] = static_cast<std::uint32_t>(i);
+      count += is_wanted_[row_of(events.data[i].code >> 1)];
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      fetch(events, wanted[std::min(k + kPrefetchDistance, count - 1)], pixels);
+      local.add(events, wanted[k], pixels);
+    }
   }
 }
 

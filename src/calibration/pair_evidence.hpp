@@ -52,7 +52,11 @@ class PairEvidence {
   std::size_t memoryBytes() const { return pixels_.capacity() * sizeof(Pixel); }
 
  private:
+  class Summation;
+
   void clear(const RowSample& rows);
+  void addAll(const PackedEventSpan& span, const Summation& summation);
+  void addWanted(const PackedEventSpan& span, const Summation& summation);
 
   SensorSize size_;
   std::vector<std::uint8_t> is_wanted_;  ///< by row: 1 for those of the sample
