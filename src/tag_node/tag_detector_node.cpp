@@ -94,6 +94,9 @@ void TagDetectorNode::withLock(Work&& work) {
 
 void TagDetectorNode::receiveImage(const sensor_msgs::ImageConstPtr& message) {
   withLock([&] {
+    if (report_.repeats(message)) {
+      return;
+    }
     report_.addArrival(message->header.seq, callback_start_ns_);
     const ImageReading reading = readImage(*message);
     if (reading.verdict != ImageVerdict::kSupported) {

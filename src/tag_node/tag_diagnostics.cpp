@@ -41,6 +41,10 @@ void TagDiagnostics::update(const TagSnapshot& now) {
   };
   complain("refused", now_.frames_refused, before_.frames_refused,
            "image(s) on " + image_topic_ + " refused: " + now_.refusal);
+  complain("repeated", now_.frames_repeated, before_.frames_repeated,
+           "image(s) on " + image_topic_ +
+               " came twice and were dropped once: roscpp connected a publisher of this process "
+               "twice, which advertised while this nodelet subscribed");
   complain("gap", now_.frame_gaps, before_.frame_gaps,
            "hole(s) in header.seq on " + image_topic_ + ": images were lost on the way");
   complain("internal error", now_.internal_errors, before_.internal_errors,
@@ -96,6 +100,7 @@ void TagDiagnostics::fill(const LatencyRecord& detection_time,
              now_.frame_id.empty() ? "none: set the parameter frame_id" : now_.frame_id);
   status.add("Frames refused", now_.frames_refused);
   status.add("Frame gaps", now_.frame_gaps);
+  status.add("Frames repeated", now_.frames_repeated);
   status.add("Internal errors", now_.internal_errors);
 }
 

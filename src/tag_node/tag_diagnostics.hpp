@@ -25,7 +25,8 @@ struct TagSnapshot {
   std::uint64_t tags = 0;
   std::uint64_t tags_in_last_frame = 0;
   std::uint64_t frames_refused = 0;
-  std::uint64_t frame_gaps = 0;  ///< holes in header.seq
+  std::uint64_t frame_gaps = 0;       ///< holes in header.seq
+  std::uint64_t frames_repeated = 0;  ///< came twice: dropped
   std::uint64_t internal_errors = 0;
   std::string refusal;         ///< of the last one
   std::string internal_error;  ///< of the last one

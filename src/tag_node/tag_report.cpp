@@ -24,6 +24,12 @@ void TagReport::addArrival(std::uint32_t sequence, std::int64_t now_ns) {
   snapshot_.frame_gaps += image_gaps_.step(sequence) == SequenceStep::kGap ? 1 : 0;
 }
 
+bool TagReport::repeats(const boost::shared_ptr<const void>& image) {
+  const bool repeats = repeated_images_.repeats(image);
+  snapshot_.frames_repeated += repeats ? 1 : 0;
+  return repeats;
+}
+
 void TagReport::addRefusedImage(const std::string& refusal) {
   ++snapshot_.frames_refused;
   snapshot_.refusal = refusal;

@@ -10,6 +10,7 @@
 
 #include "fast_edi/events/sequence_gaps.hpp"
 #include "node/latency_record.hpp"
+#include "node/repeated_messages.hpp"
 #include "node/report_publisher.hpp"
 #include "tag_node/tag_diagnostics.hpp"
 
@@ -36,6 +37,8 @@ class TagReport {
   /// An image has come.
   /// \param sequence its header.seq
   void addArrival(std::uint32_t sequence, std::int64_t now_ns);
+  /// Whether it is the one before once more, which is counted; see repeated_messages.hpp.
+  bool repeats(const boost::shared_ptr<const void>& image);
   /// It cannot be searched.
   void addRefusedImage(const std::string& refusal);
   /// It was searched.
@@ -52,6 +55,7 @@ class TagReport {
  private:
   TagSnapshot snapshot_;
   SequenceGaps image_gaps_;
+  RepeatedPointers repeated_images_;
   LatencyRecord detection_time_;
   TagDiagnostics diagnostics_;
   ReportPublisher publisher_;

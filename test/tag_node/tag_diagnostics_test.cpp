@@ -97,6 +97,7 @@ TEST_F(TagDiagnosticsTest, WarnsOncePerFault) {
   now_.frames_refused = 2;
   now_.refusal = "encoding \"32FC1\"";
   now_.frame_gaps = 1;
+  now_.frames_repeated = 3;
   now_.internal_errors = 1;
   now_.internal_error = "something";
   DiagnosticStatusWrapper status = report();
@@ -104,7 +105,8 @@ TEST_F(TagDiagnosticsTest, WarnsOncePerFault) {
   EXPECT_THAT(status.message, HasSubstr("2 image(s) on /dvs/deblurred/image_raw refused: enc"));
   EXPECT_THAT(status.message, HasSubstr("1 hole(s) in header.seq"));
   EXPECT_THAT(status.message, HasSubstr("1 internal error(s): something"));
-  EXPECT_EQ(diagnostics_.complaints().size(), 3U);
+  EXPECT_THAT(status.message, HasSubstr("3 image(s) on /dvs/deblurred/image_raw came twice"));
+  EXPECT_EQ(diagnostics_.complaints().size(), 4U);
   status = report();
   EXPECT_EQ(status.level, DiagnosticStatus::OK);
   EXPECT_EQ(value(status, "Frames refused"), "2");

@@ -2,6 +2,7 @@
 #include "tag_node/tag_report.hpp"
 
 #include <gtest/gtest.h>
+#include <boost/smart_ptr/make_shared.hpp>
 
 namespace fast_edi {
 namespace {
@@ -33,6 +34,15 @@ TEST_F(TagReportTest, CountsGapsInTheImages) {
   EXPECT_EQ(report_.totals().frame_gaps, 1U);
   EXPECT_EQ(report_.totals().listening_since_ns, 10);
   EXPECT_EQ(report_.totals().last_frame_ns, 29);
+}
+
+TEST_F(TagReportTest, CountsImagesThatComeTwice) {
+  const auto first = boost::make_shared<const int>(1);
+  const auto second = boost::make_shared<const int>(1);
+  EXPECT_FALSE(report_.repeats(first));
+  EXPECT_TRUE(report_.repeats(first));
+  EXPECT_FALSE(report_.repeats(second));
+  EXPECT_EQ(report_.totals().frames_repeated, 1U);
 }
 
 TEST_F(TagReportTest, ImagesThatNobodyListenedToAreNoGap) {
