@@ -13,7 +13,7 @@ constexpr std::size_t kSecondsOffset = 4;
 constexpr std::size_t kNanosecondsOffset = 8;
 constexpr std::size_t kPolarityOffset = 12;
 /// Events that are encoded before they are appended.
-constexpr std::size_t kBlockEvents = 256;
+constexpr std::size_t kEncodedEvents = 256;
 
 // ROS 1 puts numbers on the wire as the host has them, so a copy is the decoding; it also copes
 // with records of 13 bytes being aligned to nothing.
@@ -64,7 +64,7 @@ void encodeWireEvent(const Event& event, std::vector<std::uint8_t>& bytes) {
 
 void encodeWireEvents(const Event* events, std::size_t count, std::vector<std::uint8_t>& bytes) {
   // By blocks, which are appended as they are: appended room is set to zero first.
-  std::array<std::uint8_t, kBlockEvents * kWireEventBytes> block{};
+  std::array<std::uint8_t, kEncodedEvents * kWireEventBytes> block{};
   // The second's part is found once for all events within it: a division takes longer than the
   // rest.
   std::int64_t second_ns = 0;
@@ -72,7 +72,7 @@ void encodeWireEvents(const Event* events, std::size_t count, std::vector<std::u
   const Event* const end = events + count;
   for (const Event* event = events; event != end;) {
     const Event* const block_end =
-        event + std::min(kBlockEvents, static_cast<std::size_t>(end - event));
+        event + std::min(kEncodedEvents, static_cast<std::size_t>(end - event));
     std::uint8_t* record = block.data();
     for (; event != block_end; ++event, record += kWireEventBytes) {
       std::int64_t rest_ns = event->t_ns - second_ns;
