@@ -8,9 +8,9 @@ namespace {
 
 /// Of wanted events in the order of time, so that the next ones' pixels come into the cache in
 /// time.
-constexpr std::size_t kPrefetchDistance = 16;
+constexpr std::size_t kFetchDistance = 16;
 /// Events that are looked through for those of wanted rows before these are summed up.
-constexpr std::size_t kBlock = 2048;
+constexpr std::size_t kScannedEvents = 2048;
 
 /// y of a pixel y * width + x without a division: exact while pixels * width < 2^32, which holds
 /// for all sizes that PixelEventLists takes.
@@ -136,7 +136,7 @@ void PairEvidence::addAll(const PackedEventSpan& span, const Summation& summatio
   Pixel* const pixels = pixels_.data();
   const PackedEventSpan events = span;
   for (std::size_t i = 0; i < events.count; ++i) {
-    fetch(events, std::min(i + kPrefetchDistance, events.count - 1), pixels);
+    fetch(events, std::min(i + kFetchDistance, events.count - 1), pixels);
     local.add(events, i, pixels);
   }
 }
@@ -146,16 +146,17 @@ void PairEvidence::addWanted(const PackedEventSpan& span, const Summation& summa
   Pixel* const pixels = pixels_.data();
   const PackedEventSpan events = span;
   const RowOfPixel row_of(size_.width);
-  std::array<std::uint32_t, kBlock + 1> wanted{};  // one more: each is written, not each counts
-  for (std::size_t from = 0; from < events.count; from += kBlock) {
-    const std::size_t to = std::min(from + kBlock, events.count);
+  std::array<std::uint32_t, kScannedEvents + 1>
+      wanted{};  // one more: each is written, not each counts
+  for (std::size_t from = 0; from < events.count; from += kScannedEvents) {
+    const std::size_t to = std::min(from + kScannedEvents, events.count);
     std::size_t count = 0;
     for (std::size_t i = from; i < to; ++i) {
       wanted[count] = static_cast<std::uint32_t>(i);
       count += is_wanted_[row_of(events.data[i].code >> 1)];
     }
     for (std::size_t k = 0; k < count; ++k) {
-      fetch(events, wanted[std::min(k + kPrefetchDistance, count - 1)], pixels);
+      fetch(events, wanted[std::min(k + kFetchDistance, count - 1)], pixels);
       local.add(events, wanted[k], pixels);
     }
   }
