@@ -5,6 +5,7 @@
 #include "fast_edi/base/number_text.hpp"
 #include "fast_edi/base/sensor_size.hpp"
 #include "node/overload_guard.hpp"
+#include "node/repeated_messages.hpp"
 #include "node/status_values.hpp"
 
 namespace fast_edi {
@@ -89,9 +90,7 @@ void NodeDiagnostics::collectComplaints(const NodeSnapshot& now) {
   complain("image gap", now.frames_missing, before_.frames_missing,
            "frame(s)" + on_image + " lost on the way, by the holes in header.seq");
   complain("repeated", now.messages_repeated, before_.messages_repeated,
-           "message(s)" + on_events + "," + on_image + " or" + on_exposure +
-               " came twice and were dropped once: roscpp connected a publisher of this process "
-               "twice, which advertised while this nodelet subscribed");
+           "message(s)" + on_events + "," + on_image + " or" + on_exposure + kCameTwice);
   complain("camera info", now.camera_infos_refused, before_.camera_infos_refused,
            "camera_info(s) beside " + topics_.image +
                " refused, the one before kept: " + now.camera_info_refusal);

@@ -19,6 +19,11 @@
 
 namespace fast_edi {
 
+/// For people, behind what came.
+constexpr const char* kCameTwice =
+    " came twice and were dropped once: roscpp connected a publisher of this process twice, which "
+    "advertised while this nodelet subscribed";
+
 /// Messages that both connections deliver as the same pointer.
 class RepeatedPointers {
  public:

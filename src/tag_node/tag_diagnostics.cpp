@@ -4,6 +4,7 @@
 
 #include "fast_edi/base/number_text.hpp"
 #include "fast_edi/base/types.hpp"
+#include "node/repeated_messages.hpp"
 #include "node/status_values.hpp"
 
 namespace fast_edi {
@@ -42,9 +43,7 @@ void TagDiagnostics::update(const TagSnapshot& now) {
   complain("refused", now_.frames_refused, before_.frames_refused,
            "image(s) on " + image_topic_ + " refused: " + now_.refusal);
   complain("repeated", now_.frames_repeated, before_.frames_repeated,
-           "image(s) on " + image_topic_ +
-               " came twice and were dropped once: roscpp connected a publisher of this process "
-               "twice, which advertised while this nodelet subscribed");
+           "image(s) on " + image_topic_ + kCameTwice);
   complain("gap", now_.frame_gaps, before_.frame_gaps,
            "hole(s) in header.seq on " + image_topic_ + ": images were lost on the way");
   complain("internal error", now_.internal_errors, before_.internal_errors,
