@@ -17,9 +17,8 @@ ros::Time writableTime(const ros::Time& time) {
 BagContent::BagContent(const std::string& path, const std::string& compression)
     : compression_(compression),
       file_(path),
-      write_copied_([this](const BagChunk& chunk, const ChunkIndex& index) {
-        file_.copyChunk(*source_, chunk, index);
-      }) {}
+      write_copied_(
+          [this](const BagChunk& chunk, const ChunkIndex& index) { copyChunk(chunk, index); }) {}
 
 void BagContent::copyChunksOf(const ChunkSource& source) {
   source_ = &source.file;
@@ -30,9 +29,13 @@ void BagContent::copy(const BagMessage& message) {
   if (source_ != nullptr && message.chunk != nullptr &&
       message.chunk->compression == compression_) {
     copied_.add(message, write_copied_);
-  } else {
-    add(connections_.of(*message.connection), message.time, message.data, message.size);
+    return;
   }
+  copied_.endBefore(message.index_time, message.offset, write_copied_);
+  if (!chunk_source_) {
+    chunk_source_ = message.offset;
+  }
+  add(connections_.of(*message.connection), message.time, message.data, message.size);
 }
 
 void BagContent::write(const BagConnection& connection, const ros::Time& time,
@@ -59,7 +62,15 @@ void BagContent::add(const BagConnection& connection, const ros::Time& time,
   }
 }
 
+void BagContent::copyChunk(const BagChunk& chunk, const ChunkIndex& index) {
+  if (chunk_source_ && *chunk_source_ < chunk.offset) {
+    endChunk();
+  }
+  file_.copyChunk(*source_, chunk, index);
+}
+
 void BagContent::endChunk() {
+  chunk_source_.reset();
   const NewChunk chunk = std::exchange(chunk_, {});
   const auto full_size = static_cast<std::uint32_t>(chunk.bytes().size());
   if (compression_ == "none") {

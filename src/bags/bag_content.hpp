@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include <ros/time.h>
@@ -15,6 +16,9 @@
 
 namespace fast_edi {
 
+/// Chunks that are copied and new ones with messages of the same source lie in the order of the
+/// source: rosbag's reader for Python takes the messages of a connection as they lie in the file.
+///
 /// All throw BagError when the file cannot be written.
 class BagContent {
  public:
@@ -34,6 +38,7 @@ class BagContent {
   void add(const BagConnection& connection, const ros::Time& time, const std::uint8_t* data,
            std::uint32_t size);
   void endChunk();
+  void copyChunk(const BagChunk& chunk, const ChunkIndex& index);
 
   const std::string compression_;
   BagFile file_;
@@ -41,6 +46,7 @@ class BagContent {
   CopiedChunks copied_;
   const CopiedChunks::Write write_copied_;
   NewChunk chunk_;
+  std::optional<std::uint64_t> chunk_source_;  ///< where the first message that it copies lies
   WrittenConnections connections_;
 };
 

@@ -33,6 +33,7 @@ bool BagReader::next(BagMessage& message) {
     const BagIndexEntry& entry = index_.entries[position_++];
     const BagChunk& chunk = index_.chunks[entry.chunk];
     if (read(entry, message)) {
+      message.index_time = entry.time;
       message.offset = chunk.offset + (chunk.compressed() ? 0 : entry.offset);
       return true;
     }

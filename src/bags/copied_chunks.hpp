@@ -11,9 +11,9 @@
 
 namespace fast_edi {
 
-/// Collects the messages of each chunk until all have come; only these will be in its index. Chunks
-/// are given out in the order of the input's file as far as their times overlap: readers of bags
-/// take messages of the same time in that order.
+/// Collects the messages of each chunk until all have come; only these will be in its index.
+/// Messages come in the order of time, those of the same time in the order of the input's file.
+/// Chunks are given out in that of the file as far as their times overlap.
 class CopiedChunks {
  public:
   using Write = std::function<void(const BagChunk& chunk, const ChunkIndex& index)>;
@@ -21,6 +21,9 @@ class CopiedChunks {
   /// Writes the chunks that end before the message, then adds it to its own.
   /// \pre it has a chunk, and is not earlier than the one before
   void add(const BagMessage& message, const Write& write);
+  /// Writes the chunks of which no message can follow one of this time, as BagIndexEntry has it, at
+  /// this place of the input.
+  void endBefore(std::uint64_t time, std::uint64_t offset, const Write& write);
   /// All that are left, with those of their messages that have come.
   void finish(const Write& write);
 

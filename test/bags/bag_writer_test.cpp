@@ -80,6 +80,10 @@ std::vector<std::string> chunksOf(const std::string& path, const std::string& co
   return chunks;
 }
 
+std::string textOf(const BagMessage& message) {
+  return {reinterpret_cast<const char*>(message.data), message.size};
+}
+
 boost::shared_ptr<ros::M_string> headerOf(const std::string& publisher, bool latched) {
   auto header = boost::make_shared<ros::M_string>();
   (*header)["callerid"] = publisher;
@@ -122,6 +126,35 @@ class BagWriterTest : public ::testing::TestWithParam<const char*> {
       const std::uint32_t late = random() % 5 == 0 ? random() % 40 : 0;
       bag.write(topic, ros::Time(now - late, 0), text, header);
     }
+  }
+
+  /// Two topics with times that never go back, chunks of several compressions, and some whose last
+  /// bytes are damaged, so that they are not copied.
+  void makeOrderedInput(unsigned seed) {
+    std::mt19937 random(seed);
+    {
+      rosbag::Bag bag(input_, rosbag::bagmode::Write);
+      bag.setChunkThreshold(500 + random() % 2000);
+      std::uint32_t now = 100;
+      for (int i = 0; i < kMessages; ++i) {
+        if (i % 20 == 0) {
+          const bool is_other = random() % 4 == 0;
+          bag.setCompression(kCompressions.at(is_other ? "none" : GetParam()));
+        }
+        now += random() % 2;
+        std_msgs::String text;
+        text.data = std::to_string(i) + std::string(random() % 60, 'x');
+        bag.write(random() % 2 == 0 ? "/a" : "/b", ros::Time(now, 0), text);
+      }
+    }
+    std::string bytes = contents(input_);
+    const FileSource file(input_);
+    for (const BagChunk& chunk : buildBagIndex(file, input_).chunks) {
+      if (chunk.compressed() && random() % 4 == 0) {
+        bytes[chunk.offset + chunk.size - 1] ^= 1;  // of a checksum
+      }
+    }
+    std::ofstream(input_, std::ios::binary) << bytes;
   }
 
   /// \param most messages that are copied
@@ -226,6 +259,33 @@ TEST_P(BagWriterTest, WritesABagThatCanBeContinued) {
   const Bag after = read(output_);
   EXPECT_EQ(count(after), before + 1);
   EXPECT_EQ(after.size(), 6u);  // connections: four, its own, and one more
+}
+
+/// rosbag's reader for Python does not sort the messages of a connection.
+TEST_P(BagWriterTest, KeepsTheMessagesOfEachConnectionInOrderInTheFile) {
+  for (unsigned seed = 0; seed < kBags; ++seed) {
+    SCOPED_TRACE(seed);
+    makeOrderedInput(seed);
+    std::map<std::uint32_t, std::vector<std::string>> wanted;
+    BagReader reader(input_);
+    BagMessage message;
+    while (reader.next(message)) {
+      wanted[message.connection->id].push_back(textOf(message));
+    }
+    copy(GetParam(), true);
+    BagReader written(output_);
+    std::map<std::uint32_t, std::vector<std::string>> found;
+    std::map<std::uint32_t, std::uint64_t> places;
+    while (written.next(message)) {
+      const std::uint32_t connection = message.connection->id;
+      EXPECT_GE(message.offset, places[connection]) << message.connection->topic;
+      places[connection] = message.offset;
+      if (message.connection->topic != kOwnTopic) {
+        found[connection].push_back(textOf(message));
+      }
+    }
+    EXPECT_TRUE(found == wanted);
+  }
 }
 
 /// All that can be read of a damaged bag is in an output that has no damage.

@@ -52,13 +52,14 @@ TEST_F(CopiedChunksTest, AreWrittenWhenTheirTimeIsOver) {
   const BagChunk second = chunkOf(200, 4);
   add(first, 1);
   add(first, 2);
-  add(second, 2);  // of the same time: the first may have one more
+  add(first, 2);  // of the same time
   EXPECT_THAT(written_, IsEmpty());
-  add(second, 4);
+  add(second, 2);
   EXPECT_THAT(written_, ElementsAre(100));
+  add(second, 4);
   chunks_.finish(write_);
   EXPECT_THAT(written_, ElementsAre(100, 200));
-  EXPECT_THAT(counts_, ElementsAre(2, 2));
+  EXPECT_THAT(counts_, ElementsAre(3, 2));
 }
 
 TEST_F(CopiedChunksTest, ThatOverlapKeepTheOrderOfTheFile) {
@@ -80,6 +81,19 @@ TEST_F(CopiedChunksTest, DoNotWaitForThoseBehindThem) {
   add(early, 2);
   add(late, 3);
   EXPECT_THAT(written_, ElementsAre(200));
+}
+
+TEST_F(CopiedChunksTest, EndBeforeATime) {
+  const BagChunk first = chunkOf(100, 2);
+  const BagChunk second = chunkOf(200, 4);
+  add(first, 1);
+  add(second, 1);
+  chunks_.endBefore(first.last_time, 50, write_);
+  EXPECT_THAT(written_, IsEmpty());
+  chunks_.endBefore(first.last_time, 150, write_);
+  EXPECT_THAT(written_, ElementsAre(100));
+  chunks_.endBefore(second.last_time + 1, 50, write_);
+  EXPECT_THAT(written_, ElementsAre(100, 200));
 }
 
 TEST_F(CopiedChunksTest, HaveNoMoreThanWhatCame) {

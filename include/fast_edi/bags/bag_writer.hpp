@@ -45,8 +45,8 @@ class BagWriter {
   BagWriter& operator=(const BagWriter&) = delete;
 
   /// From now on, copy() takes whole chunks of the source as they are, where they are compressed as
-  /// the output. They do not lie in the order of time among the others then, as rosbag's readers
-  /// do not expect it either.
+  /// the output. They lie in the order of the source then, those of other topics before or behind
+  /// them: rosbag's readers expect no more.
   /// \param source of all messages that are copied; must outlive this object
   /// \pre nothing was written yet
   void copyChunksOf(const ChunkSource& source);

@@ -18,6 +18,9 @@ namespace fast_edi {
 struct BagMessage {
   const BagConnection* connection = nullptr;
   ros::Time time;  ///< record time
+  /// That of a bag's index, as BagIndexEntry has it, in whose order messages come; `time` is
+  /// another one where it had to be put right.
+  std::uint64_t index_time = 0;
   const std::uint8_t* data = nullptr;
   std::uint32_t size = 0;
   std::uint64_t offset = 0;  ///< in its file; of its chunk where that is compressed
