@@ -331,6 +331,9 @@ TEST_F(DeblurBagTool, NeverWritesOverItsInputOrUnasked) {
   EXPECT_EQ(
       run("--in '" + killed + ".active' --out '" + killed + "' --force" + kThresholds).exit_code,
       1);
+  const auto learned = run(paths() + " --force --save-learned '" + input_ + "'" + kThresholds);
+  EXPECT_EQ(learned.exit_code, 1);
+  EXPECT_THAT(learned.output, HasSubstr("it is the input"));
   EXPECT_EQ(contents(input_), before);
   EXPECT_EQ(contents(killed + ".active"), before);
 
