@@ -123,10 +123,13 @@ std::unique_ptr<fast_edi::Recording> openItems(const Arguments& arguments) {
 }
 
 void refuseInputAsOutput(const Arguments& arguments) {
-  for (const std::string& input : arguments.inputs) {
-    std::error_code ignored;  // one that does not exist is not the same
-    if (fs::equivalent(input, arguments.output, ignored)) {
-      throw fast_edi::RecordingError("cannot write " + arguments.output + ": it is the input");
+  // Outputs grow under the second name.
+  for (const std::string& output : {arguments.output, arguments.output + ".active"}) {
+    for (const std::string& input : arguments.inputs) {
+      std::error_code ignored;  // one that does not exist is not the same
+      if (fs::equivalent(input, output, ignored)) {
+        throw fast_edi::RecordingError("cannot write " + output + ": it is the input");
+      }
     }
   }
 }

@@ -93,6 +93,18 @@ TEST_F(InputForms, SeveralBagsInARow) {
   EXPECT_THAT(result.output, HasSubstr("it is the input"));
 }
 
+TEST_F(InputForms, AConversionThatWasKilledIsNotOverwrittenByItsOwn) {
+  const std::string killed = file("killed.aedat4");
+  ASSERT_EQ(runCommand(kTools + "convert_recording " + bag_ + " " + killed).exit_code, 0);
+  std::filesystem::rename(killed, killed + ".active");
+  const auto size = std::filesystem::file_size(killed + ".active");
+  const CommandResult result =
+      runCommand(kTools + "convert_recording --force " + killed + ".active " + killed);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, HasSubstr("it is the input"));
+  EXPECT_EQ(std::filesystem::file_size(killed + ".active"), size);
+}
+
 TEST_F(InputForms, CompressedFrames) {
   {
     const rosbag::Bag bag(bag_);
