@@ -43,7 +43,12 @@ BagWriter::BagWriter(const std::string& path, const std::vector<std::string>& in
   if (unfinished_ == UnfinishedBag::kRemove) {
     claim();
   }
-  guarded([&] { content_ = std::make_unique<BagContent>(active_path_, compression); });
+  try {
+    guarded([&] { content_ = std::make_unique<BagContent>(active_path_, compression); });
+  } catch (const BagError&) {
+    removeUnfinished();
+    throw;
+  }
 }
 
 void BagWriter::requireFree(const std::vector<std::string>& inputs, bool overwrite) const {
@@ -77,6 +82,10 @@ BagWriter::~BagWriter() {
       // Somebody else's error is on its way already.
     }
   }
+  removeUnfinished();
+}
+
+void BagWriter::removeUnfinished() {
   if (lock_.isHeld()) {
     std::error_code ignored;
     fs::remove(active_path_, ignored);

@@ -162,6 +162,15 @@ TEST_F(DeblurManyBags, TheInputIsNeverTheOutput) {
   EXPECT_TRUE(contents(input) == before);
 }
 
+TEST_F(DeblurManyBags, NothingIsLeftWhereNothingCanBeWritten) {
+  const std::string input = makeBag("in.bag", 1);
+  const auto result = testing::runCommand("ulimit -f 0; " + kTool + "--in '" + input +
+                                          "' --out-dir '" + folder_ + "'" + kThresholds);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, HasSubstr("what was written so far is removed"));
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
 TEST_F(DeblurManyBags, WhatAKilledProcessLeftIsReplacedAndWhatOneWritesIsNot) {
   const std::string input = makeBag("in.bag", 1);
   fs::create_directory(folder_);

@@ -84,6 +84,7 @@ class BagWriter {
 
   void requireFree(const std::vector<std::string>& inputs, bool overwrite) const;
   void claim();
+  void removeUnfinished();
 
   const std::string path_;
   const std::string active_path_;
