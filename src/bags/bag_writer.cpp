@@ -66,6 +66,10 @@ void BagWriter::requireFree(const std::vector<std::string>& inputs, bool overwri
       throw BagError("cannot write " + output + ": it is a directory");
     }
   }
+  // A device or a pipe would give its name to the output.
+  if (fs::exists(path_) && !fs::is_regular_file(path_)) {
+    throw BagError("cannot write " + path_ + ": it is no regular file");
+  }
 }
 
 void BagWriter::claim() {

@@ -22,6 +22,10 @@ OutputPath::OutputPath(const std::string& path, bool overwrite)
       throw RecordingError("cannot write " + output + ": it exists already (--force replaces it)");
     }
   }
+  // A device or a pipe would give its name to the output.
+  if (fs::exists(path_) && !fs::is_regular_file(path_)) {
+    throw RecordingError("cannot write " + path_ + ": it is no regular file");
+  }
 }
 
 void OutputPath::complete() const {

@@ -10,6 +10,8 @@
 #include <std_msgs/String.h>
 #include <boost/make_shared.hpp>
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -378,6 +380,17 @@ TEST_F(BagWriterFile, IsNotReplacedUnasked) {
   }
   writer(true).close();
   EXPECT_THROW(BagWriter(path_, {path_}, "none", true), BagError);
+}
+
+TEST_F(BagWriterFile, ReplacesFilesAlone) {
+  ASSERT_EQ(::mkfifo(path_.c_str(), S_IRWXU), 0);
+  try {
+    writer(true);
+    FAIL() << "replaced a pipe";
+  } catch (const BagError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(path_ + ": it is no regular file"));
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(path_));
 }
 
 }  // namespace

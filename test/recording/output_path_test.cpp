@@ -2,8 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "fast_edi/recording/recording_error.hpp"
 #include "support/temporary_directory.hpp"
@@ -34,6 +37,14 @@ TEST(OutputPath, ReplacesNothingUnlessItMay) {
   EXPECT_NO_THROW(OutputPath(path, true));
   fs::create_directory(path);
   EXPECT_THROW(OutputPath(path, true), RecordingError);
+}
+
+TEST(OutputPath, ReplacesFilesAlone) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("out");
+  ASSERT_EQ(::mkfifo(path.c_str(), S_IRWXU), 0);
+  EXPECT_THROW(OutputPath(path, true), RecordingError);
+  EXPECT_TRUE(fs::is_fifo(path));
 }
 
 }  // namespace
