@@ -42,7 +42,8 @@ void check(const Connections& connections, const std::string& topic, const std::
     }
   }
   if (!found && required) {
-    faults << "topic " << topic << " (" << option << ", a " << type.name << ") is not in the bag\n";
+    faults << "topic " << topic << " (" << option << ", a " << type.name
+           << ") is not in the recording; name another one by " << option << "\n";
   }
 }
 
@@ -123,13 +124,13 @@ std::string checkTopics(const TopicNames& topics, const Connections& connections
        {topics.outputImage(), topics.outputCameraInfo(), topics.outputLatent()}) {
     if (has(connections, output)) {
       faults << "topic " << output
-             << " is in the bag already: give the output another namespace (--output)\n";
+             << " is in the recording already: give the output another namespace (--output)\n";
     }
   }
   if (faults.str().empty()) {
     return {};
   }
-  faults << "the bag has:\n";
+  faults << "the recording has:\n";
   std::set<std::string> lines;
   for (const auto& entry : connections) {
     std::ostringstream line;

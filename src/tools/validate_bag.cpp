@@ -68,12 +68,12 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
 
 void addFileFindings(const tools::ReadResult& pass, std::vector<fast_edi::Finding>& findings) {
   if (!pass.damage.empty()) {
-    findings.push_back({"file-damaged", "a complete bag",
-                        fast_edi::textOf("%zu places cannot be read, the first at byte %llu: %s",
-                                         pass.damage.size(),
-                                         static_cast<unsigned long long>(pass.damage[0].offset),
-                                         pass.damage[0].what.c_str()),
-                        "deblur_bag reads what is left; rosbag reindex mends a cut bag"});
+    findings.push_back(
+        {"file-damaged", "a complete recording",
+         fast_edi::textOf(
+             "%zu places cannot be read, the first at byte %llu: %s", pass.damage.size(),
+             static_cast<unsigned long long>(pass.damage[0].offset), pass.damage[0].what.c_str()),
+         "deblur_bag reads what is left; rosbag reindex mends a bag that was cut short"});
   }
   if (pass.malformed > 0) {
     findings.push_back(

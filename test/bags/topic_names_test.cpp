@@ -71,8 +71,9 @@ TEST(GuessTopics, TrueFramesAndOutputsAreNoFrames) {
   add<EventArray>("/dvs/events", connections);
   add<sensor_msgs::Image>("/dvs/ground_truth/image_raw", connections);
   EXPECT_EQ(guessTopics({}, connections).image, "/dvs/image_raw");
-  EXPECT_THAT(checkTopics(guessTopics({}, connections), connections),
-              HasSubstr("topic /dvs/image_raw (--image, a sensor_msgs/Image) is not in the bag"));
+  EXPECT_THAT(
+      checkTopics(guessTopics({}, connections), connections),
+      HasSubstr("topic /dvs/image_raw (--image, a sensor_msgs/Image) is not in the recording"));
   for (const char* topic :
        {"/dvs/deblurred/image_raw", "/dvs/latent/image_raw", "/dvs/comparison", "/cam/image"}) {
     add<sensor_msgs::Image>(topic, connections);

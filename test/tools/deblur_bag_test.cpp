@@ -251,10 +251,11 @@ TEST_F(DeblurBagTool, ProcessesWhatIsThereOfADamagedBag) {
 TEST_F(DeblurBagTool, NamesAMissingTopicAndThoseThatAreThere) {
   const auto missing = run(paths() + " --image /camera/image_raw" + kThresholds);
   EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_THAT(missing.output,
-              AllOf(HasSubstr("/camera/image_raw (--image, a sensor_msgs/Image) is not in the bag"),
-                    HasSubstr("/dvs/image_raw  sensor_msgs/Image  10 messages"),
-                    HasSubstr("/dvs/events  dvs_msgs/EventArray")));
+  EXPECT_THAT(
+      missing.output,
+      AllOf(HasSubstr("/camera/image_raw (--image, a sensor_msgs/Image) is not in the recording"),
+            HasSubstr("/dvs/image_raw  sensor_msgs/Image  10 messages"),
+            HasSubstr("/dvs/events  dvs_msgs/EventArray")));
   const auto wrong = run(paths() + " --events /dvs/image_raw" + kThresholds);
   EXPECT_EQ(wrong.exit_code, 1);
   EXPECT_THAT(wrong.output, HasSubstr("/dvs/image_raw (--events) is a sensor_msgs/Image, expected "
@@ -268,7 +269,7 @@ TEST_F(DeblurBagTool, RefusesToDeblurTheSameRecordingTwice) {
   const std::string arguments = "--in '" + output_ + "' --out '" + again + "'" + kThresholds;
   const auto refused = run(arguments);
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.output, HasSubstr("/dvs/deblurred/image_raw is in the bag already"));
+  EXPECT_THAT(refused.output, HasSubstr("/dvs/deblurred/image_raw is in the recording already"));
   EXPECT_EQ(run(arguments + " --output /second").exit_code, 0);
   EXPECT_THAT(on(readRaw(again), "/second/image_raw"), SizeIs(kFrames));
 }
