@@ -163,7 +163,7 @@ class Deblurrer:
                          [LatentImage(*item) for item in latent])
 
     def run(self, recording: Recording) -> Iterator[Result]:
-        """The results of a whole recording, which must have the same time_unit.
+        """The results of a whole recording, opened with the same time_unit.
 
         Where the recording has the exposure of each frame, stamp_reference and exposure_source are not
         used."""
@@ -298,7 +298,8 @@ class Recording:
 def open(path: Path, *, time_unit: str = "us") -> Recording:
     """
     Opens a recording by its content: AEDAT4, AEDAT3.1, AEDAT2 and rosbag2 (ROS 2); rosbags of ROS 1, HDF5,
-    and folders or zip archives of pictures with text where the module was built with ROS.
+    and folders or zip archives of pictures with text where the module was built with ROS. Compressed frames of a
+    rosbag2 are left out, which Recording.damage says.
 
     Raises OSError when it cannot be read, ValueError when it is no recording that is read.
     """
