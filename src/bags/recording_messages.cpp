@@ -139,18 +139,21 @@ std::uint32_t RecordingMessages::connect(const std::string& topic) {
 template <typename Message>
 void RecordingMessages::send(std::uint32_t connection, std::int64_t record_ns,
                              const Message& message) {
-  Waiting waiting;
-  waiting.connection = connection;
-  waiting.time = stampOf(record_ns);
-  if (!spare_.empty()) {
-    waiting.bytes = std::move(spare_.back());
-    spare_.pop_back();
-  }
+  std::vector<std::uint8_t> bytes = takeSpare();
   const std::uint32_t length = ros::serialization::serializationLength(message);
-  waiting.bytes.resize(length);
-  ros::serialization::OStream stream(waiting.bytes.data(), length);
+  bytes.resize(length);
+  ros::serialization::OStream stream(bytes.data(), length);
   ros::serialization::serialize(stream, message);
-  waiting_.push_back(std::move(waiting));
+  waiting_.push_back({connection, stampOf(record_ns), std::move(bytes)});
+}
+
+std::vector<std::uint8_t> RecordingMessages::takeSpare() {
+  if (spare_.empty()) {
+    return {};
+  }
+  std::vector<std::uint8_t> bytes = std::move(spare_.back());
+  spare_.pop_back();
+  return bytes;
 }
 
 bool RecordingMessages::next(BagMessage& message) {
@@ -205,7 +208,9 @@ void RecordingMessages::addEvents(Output& output, const RecordedEvents& events,
   }
   const Event* const end = events.data + events.count;
   for (const Event* begin = events.data; begin != end;) {
-    if (output.records.empty()) {
+    if (output.array.empty()) {
+      output.array = takeSpare();
+      output.array.assign(fieldsLength(EventArrayView()), 0);
       output.first_ns = begin->t_ns;
     }
     const Event* array_end = end;
@@ -213,20 +218,20 @@ void RecordingMessages::addEvents(Output& output, const RecordedEvents& events,
       // From the first of the array on; also a jump back ends it.
       array_end = firstOutside(begin, end, {output.first_ns, output.first_ns + array_ns_});
     }
-    encodeWireEvents(begin, static_cast<std::size_t>(array_end - begin), output.records);
+    encodeWireEvents(begin, static_cast<std::size_t>(array_end - begin), output.array);
     if (array_end != begin) {
       output.last_ns = (array_end - 1)->t_ns;
     }
     begin = array_end;
     if (array_ns_ == 0 || array_end != end ||
-        output.records.size() > kMaxArrayEvents * kWireEventBytes) {
+        output.array.size() > kMaxArrayEvents * kWireEventBytes) {
       sendArray(output, record_ns);
     }
   }
 }
 
 void RecordingMessages::sendArray(Output& output, std::int64_t record_ns) {
-  if (output.records.empty()) {
+  if (output.array.empty()) {
     return;
   }
   EventArrayView array;
@@ -234,9 +239,11 @@ void RecordingMessages::sendArray(Output& output, std::int64_t record_ns) {
   array.header.stamp = stampOf(output.first_ns);
   array.width = static_cast<std::uint32_t>(output.size.width);
   array.height = static_cast<std::uint32_t>(output.size.height);
-  array.assign({output.records.data(), output.records.size() / kWireEventBytes});
-  send(output.connection, record_ns, array);
-  output.records.clear();
+  const std::uint32_t length = fieldsLength(array);
+  ros::serialization::OStream stream(output.array.data(), length);
+  writeFields(array, (output.array.size() - length) / kWireEventBytes, stream);
+  waiting_.push_back({output.connection, stampOf(record_ns), std::move(output.array)});
+  output.array.clear();
 }
 
 void RecordingMessages::addFrame(Output& output, const RecordedFrame& frame,

@@ -43,8 +43,10 @@ class RecordingMessages : public MessageSource {
     std::uint32_t exposure_connection = 0;  ///< of frames
     std::uint32_t sequence = 0;
     SensorSize size;
-    std::vector<std::uint8_t> records;  ///< events that wait for the end of their array
-    std::int64_t first_ns = 0;          ///< of these
+    /// The message of events that wait for the end of their array: room for its fields, and their
+    /// records; empty if there are none.
+    std::vector<std::uint8_t> array;
+    std::int64_t first_ns = 0;  ///< of these events
     std::int64_t last_ns = 0;
   };
   struct Waiting {
@@ -57,6 +59,7 @@ class RecordingMessages : public MessageSource {
   std::uint32_t connect(const std::string& topic);
   template <typename Message>
   void send(std::uint32_t connection, std::int64_t record_ns, const Message& message);
+  std::vector<std::uint8_t> takeSpare();
   void add(const RecordingItem& item);
   void addEvents(Output& output, const RecordedEvents& events, std::int64_t record_ns);
   void addFrame(Output& output, const RecordedFrame& frame, std::int64_t record_ns);

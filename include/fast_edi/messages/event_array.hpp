@@ -89,6 +89,21 @@ SensorSize sensorSize(const Array& array) {
   return {static_cast<int>(array.width), static_cast<int>(array.height)};
 }
 
+/// Bytes of an array's message in front of its records.
+template <typename Array>
+std::uint32_t fieldsLength(const Array& array) {
+  return ros::serialization::serializationLength(array.header) + 3 * sizeof(std::uint32_t);
+}
+
+/// Writes these bytes: \p count records follow.
+template <typename Array, typename Stream>
+void writeFields(const Array& array, std::size_t count, Stream& stream) {
+  stream.next(array.header);
+  stream.next(array.height);
+  stream.next(array.width);
+  stream.next(static_cast<std::uint32_t>(count));
+}
+
 namespace event_array_detail {
 
 /// What identifies the message, shared by both C++ types.
@@ -136,10 +151,7 @@ struct ArraySerialiser {
   template <typename Stream>
   static void write(Stream& stream, const Array& array) {
     const WireEvents events = array.events();
-    stream.next(array.header);
-    stream.next(array.height);
-    stream.next(array.width);
-    stream.next(static_cast<std::uint32_t>(events.count));
+    writeFields(array, events.count, stream);
     if (!events.empty()) {
       const std::size_t bytes = events.count * kWireEventBytes;
       std::memcpy(stream.advance(static_cast<std::uint32_t>(bytes)), events.data, bytes);
@@ -164,9 +176,8 @@ struct ArraySerialiser {
 
   /// \throws ros::serialization::StreamOverrunException for an array beyond a message's 4 GiB
   static std::uint32_t serializedLength(const Array& array) {
-    const std::uint64_t length = ros::serialization::serializationLength(array.header) +
-                                 3 * sizeof(std::uint32_t) +
-                                 array.events().count * std::uint64_t{kWireEventBytes};
+    const std::uint64_t length =
+        fieldsLength(array) + array.events().count * std::uint64_t{kWireEventBytes};
     if (length > std::numeric_limits<std::uint32_t>::max()) {
       ros::serialization::throwStreamOverrun();
     }
