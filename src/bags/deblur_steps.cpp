@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kBytesPerThread = std::size_t{16} << 20;
 constexpr std::size_t kWaitingFramesPerThread = 2;
+constexpr std::size_t kSpareBatches = 8;
 
 /// Which steps can be taken, and what they have left behind. The crew calls it by one thread at a
 /// time, apart from the work of the steps.
@@ -77,6 +78,10 @@ class ThreadedSteps {
   Step read() {
     busy_.reading = true;
     const auto batch = std::make_shared<Batch>();
+    if (!spare_.empty()) {
+      batch->messages = std::move(spare_.back());
+      spare_.pop_back();
+    }
     return {[this, batch] { fill(*batch); },
             [this, batch] {
               busy_.reading = false;
@@ -192,6 +197,10 @@ class ThreadedSteps {
             [this, batch] {
               busy_.writing = false;
               integrated_bytes_ -= batch->bytes;
+              if (spare_.size() < kSpareBatches) {
+                batch->messages.clear();
+                spare_.push_back(std::move(batch->messages));
+              }
             }};
   }
 
@@ -210,6 +219,7 @@ class ThreadedSteps {
   std::deque<std::shared_ptr<Batch>> read_;                ///< to be integrated
   std::deque<Frame> frames_;                               ///< to be filtered
   std::deque<std::shared_ptr<Batch>> integrated_;          ///< to be written
+  std::vector<MessageBatch> spare_;                        ///< for reading, with their memory
   std::vector<std::shared_ptr<FrameRenderer>> renderers_;  ///< that nobody uses just now
   std::size_t read_bytes_ = 0;
   std::size_t integrated_bytes_ = 0;  ///< of those being written, too

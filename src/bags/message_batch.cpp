@@ -20,6 +20,11 @@ void MessageBatch::complete() {
   }
 }
 
+void MessageBatch::clear() {
+  bytes_.clear();
+  entries_.clear();
+}
+
 std::size_t MessageBatch::bytes() const {
   std::size_t bytes = bytes_.size();
   for (const Entry& entry : entries_) {

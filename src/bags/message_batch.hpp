@@ -34,6 +34,8 @@ class MessageBatch {
   /// To be called behind the last message, before any of them is used.
   void complete();
 
+  /// Empties the batch; its memory stays for the next messages.
+  void clear();
   /// Drops the messages from this one on.
   void endBefore(std::size_t entry) { entries_.resize(entry); }
 

@@ -139,7 +139,7 @@ std::uint32_t RecordingMessages::connect(const std::string& topic) {
 template <typename Message>
 void RecordingMessages::send(std::uint32_t connection, std::int64_t record_ns,
                              const Message& message) {
-  std::vector<std::uint8_t> bytes = takeSpare();
+  RawBytes bytes = takeSpare();
   const std::uint32_t length = ros::serialization::serializationLength(message);
   bytes.resize(length);
   ros::serialization::OStream stream(bytes.data(), length);
@@ -147,11 +147,11 @@ void RecordingMessages::send(std::uint32_t connection, std::int64_t record_ns,
   waiting_.push_back({connection, stampOf(record_ns), std::move(bytes)});
 }
 
-std::vector<std::uint8_t> RecordingMessages::takeSpare() {
+RawBytes RecordingMessages::takeSpare() {
   if (spare_.empty()) {
     return {};
   }
-  std::vector<std::uint8_t> bytes = std::move(spare_.back());
+  RawBytes bytes = std::move(spare_.back());
   spare_.pop_back();
   return bytes;
 }
@@ -210,7 +210,7 @@ void RecordingMessages::addEvents(Output& output, const RecordedEvents& events,
   for (const Event* begin = events.data; begin != end;) {
     if (output.array.empty()) {
       output.array = takeSpare();
-      output.array.assign(fieldsLength(EventArrayView()), 0);
+      output.array.resize(fieldsLength(EventArrayView()));
       output.first_ns = begin->t_ns;
     }
     const Event* array_end = end;
@@ -218,7 +218,10 @@ void RecordingMessages::addEvents(Output& output, const RecordedEvents& events,
       // From the first of the array on; also a jump back ends it.
       array_end = firstOutside(begin, end, {output.first_ns, output.first_ns + array_ns_});
     }
-    encodeWireEvents(begin, static_cast<std::size_t>(array_end - begin), output.array);
+    const auto count = static_cast<std::size_t>(array_end - begin);
+    const std::size_t encoded = output.array.size();
+    output.array.resize(encoded + count * kWireEventBytes);
+    encodeWireEvents(begin, count, output.array.data() + encoded);
     if (array_end != begin) {
       output.last_ns = (array_end - 1)->t_ns;
     }

@@ -62,30 +62,32 @@ void encodeWireEvent(const Event& event, std::vector<std::uint8_t>& bytes) {
   writeWireEvent(event, bytes.data() + begin);
 }
 
-void encodeWireEvents(const Event* events, std::size_t count, std::vector<std::uint8_t>& bytes) {
-  // By blocks, which are appended as they are: appended room is set to zero first.
-  std::array<std::uint8_t, kEncodedEvents * kWireEventBytes> block{};
+void encodeWireEvents(const Event* events, std::size_t count, std::uint8_t* records) {
   // The second's part is found once for all events within it: a division takes longer than the
   // rest.
   std::int64_t second_ns = 0;
   std::uint32_t second = 0;
-  const Event* const end = events + count;
-  for (const Event* event = events; event != end;) {
-    const Event* const block_end =
-        event + std::min(kEncodedEvents, static_cast<std::size_t>(end - event));
-    std::uint8_t* record = block.data();
-    for (; event != block_end; ++event, record += kWireEventBytes) {
-      std::int64_t rest_ns = event->t_ns - second_ns;
-      if (rest_ns < 0 || rest_ns >= kNanosecondsPerSecond) {
-        second = static_cast<std::uint32_t>(event->t_ns / kNanosecondsPerSecond);
-        second_ns = std::int64_t{second} * kNanosecondsPerSecond;
-        rest_ns = event->t_ns - second_ns;
-      }
-      setWirePixel(event->x, event->y, event->on, record);
-      writeNumber(second, record + kSecondsOffset);
-      writeNumber(static_cast<std::uint32_t>(rest_ns), record + kNanosecondsOffset);
+  for (const Event* event = events; event != events + count; ++event, records += kWireEventBytes) {
+    std::int64_t rest_ns = event->t_ns - second_ns;
+    if (rest_ns < 0 || rest_ns >= kNanosecondsPerSecond) {
+      second = static_cast<std::uint32_t>(event->t_ns / kNanosecondsPerSecond);
+      second_ns = std::int64_t{second} * kNanosecondsPerSecond;
+      rest_ns = event->t_ns - second_ns;
     }
-    bytes.insert(bytes.end(), block.data(), record);
+    setWirePixel(event->x, event->y, event->on, records);
+    writeNumber(second, records + kSecondsOffset);
+    writeNumber(static_cast<std::uint32_t>(rest_ns), records + kNanosecondsOffset);
+  }
+}
+
+void encodeWireEvents(const Event* events, std::size_t count, std::vector<std::uint8_t>& bytes) {
+  // By blocks, which are appended as they are: appended room is set to zero first.
+  std::array<std::uint8_t, kEncodedEvents * kWireEventBytes> block{};
+  for (std::size_t done = 0; done < count;) {
+    const std::size_t now = std::min(kEncodedEvents, count - done);
+    encodeWireEvents(events + done, now, block.data());
+    bytes.insert(bytes.end(), block.data(), block.data() + now * kWireEventBytes);
+    done += now;
   }
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/raw_bytes.hpp"
+#include "fast_edi/base/raw_bytes.hpp"
 #include "fast_edi/recording/byte_source.hpp"
 #include "fast_edi/recording/recording.hpp"
 #include "recording/aedat4_header.hpp"

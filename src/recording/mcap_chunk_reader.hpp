@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/raw_bytes.hpp"
+#include "fast_edi/base/raw_bytes.hpp"
 #include "fast_edi/recording/byte_source.hpp"
 #include "recording/mcap_records.hpp"
 #include "recording/packet_compression.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/raw_bytes.hpp"
+#include "fast_edi/base/raw_bytes.hpp"
 #include "fast_edi/recording/byte_source.hpp"
 #include "recording/packet_compression.hpp"
 

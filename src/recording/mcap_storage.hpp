@@ -15,7 +15,7 @@
 #include <tuple>
 #include <vector>
 
-#include "base/raw_bytes.hpp"
+#include "fast_edi/base/raw_bytes.hpp"
 #include "recording/mcap_chunk_reader.hpp"
 #include "recording/mcap_index.hpp"
 #include "recording/mcap_topics.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/raw_bytes.hpp"
+#include "fast_edi/base/raw_bytes.hpp"
 
 namespace fast_edi {
 

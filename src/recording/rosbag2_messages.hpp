@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/raw_bytes.hpp"
+#include "fast_edi/base/raw_bytes.hpp"
 #include "fast_edi/recording/recording.hpp"
 #include "recording/packet_compression.hpp"
 #include "recording/rosbag2_files.hpp"

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "base/raw_bytes.hpp"
+#include "fast_edi/base/raw_bytes.hpp"
 #include "fast_edi/recording/recording.hpp"
 #include "recording/aedat4_packet_decoder.hpp"
 #include "recording/flatbuffer.hpp"

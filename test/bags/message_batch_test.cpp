@@ -50,6 +50,23 @@ TEST(MessageBatch, IsFullSomewhere) {
   EXPECT_TRUE(batch.isFull());
 }
 
+TEST(MessageBatch, StartsAnewWhenCleared) {
+  const BagConnection connection;
+  MessageBatch batch;
+  batch.add(messageOf(connection, std::vector<std::uint8_t>(1 << 20)));
+  batch.complete();
+  batch.clear();
+  EXPECT_TRUE(batch.entries().empty());
+  EXPECT_EQ(batch.bytes(), 0u);
+  EXPECT_FALSE(batch.isFull());
+  const std::vector<std::uint8_t> bytes = {1, 2, 3};
+  batch.add(messageOf(connection, bytes));
+  batch.complete();
+  ASSERT_EQ(batch.entries().size(), 1u);
+  const BagMessage& message = batch.entries()[0].read.message;
+  EXPECT_EQ(std::vector<std::uint8_t>(message.data, message.data + message.size), bytes);
+}
+
 TEST(MessageBatch, CountsImages) {
   MessageBatch batch;
   batch.addEnd(ros::Time(12, 5));

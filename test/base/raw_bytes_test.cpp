@@ -1,4 +1,4 @@
-#include "base/raw_bytes.hpp"
+#include "fast_edi/base/raw_bytes.hpp"
 
 #include <gtest/gtest.h>
 

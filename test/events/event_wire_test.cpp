@@ -48,6 +48,13 @@ TEST(EventWire, EncodesManyAsOneByOne) {
   EXPECT_EQ(bytes, expected);
   encodeWireEvents(nullptr, 0, bytes);
   EXPECT_EQ(bytes, expected);
+  // In place; nothing beyond the records is touched.
+  constexpr std::uint8_t kBeyond = 77;
+  std::vector<std::uint8_t> records(events.size() * kWireEventBytes + 1, kBeyond);
+  encodeWireEvents(events.data(), events.size(), records.data());
+  EXPECT_EQ(records.back(), kBeyond);
+  records.pop_back();
+  EXPECT_EQ(records, std::vector<std::uint8_t>(expected.begin() + 3, expected.end()));
 }
 
 TEST(EventWire, AnyNonZeroPolarityIsOn) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "fast_edi/bags/message_source.hpp"
+#include "fast_edi/base/raw_bytes.hpp"
 #include "fast_edi/recording/recording.hpp"
 
 namespace fast_edi {
@@ -45,21 +46,21 @@ class RecordingMessages : public MessageSource {
     SensorSize size;
     /// The message of events that wait for the end of their array: room for its fields, and their
     /// records; empty if there are none.
-    std::vector<std::uint8_t> array;
+    RawBytes array;
     std::int64_t first_ns = 0;  ///< of these events
     std::int64_t last_ns = 0;
   };
   struct Waiting {
     std::uint32_t connection = 0;
     ros::Time time;
-    std::vector<std::uint8_t> bytes;
+    RawBytes bytes;
   };
 
   template <typename Message>
   std::uint32_t connect(const std::string& topic);
   template <typename Message>
   void send(std::uint32_t connection, std::int64_t record_ns, const Message& message);
-  std::vector<std::uint8_t> takeSpare();
+  RawBytes takeSpare();
   void add(const RecordingItem& item);
   void addEvents(Output& output, const RecordedEvents& events, std::int64_t record_ns);
   void addFrame(Output& output, const RecordedFrame& frame, std::int64_t record_ns);
@@ -74,7 +75,7 @@ class RecordingMessages : public MessageSource {
   std::vector<Output> outputs_;  ///< one for each stream
   std::deque<Waiting> waiting_;
   Waiting given_;  ///< what next() returned last
-  std::vector<std::vector<std::uint8_t>> spare_;
+  std::vector<RawBytes> spare_;
   std::int64_t record_ns_ = 0;
   bool ended_ = false;
 };

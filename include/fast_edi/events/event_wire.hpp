@@ -41,6 +41,10 @@ void writeWireEvent(const Event& event, std::uint8_t* record);
 /// Appends one record to \p bytes. \pre 0 <= event.t_ns < 2^32 s
 void encodeWireEvent(const Event& event, std::vector<std::uint8_t>& bytes);
 
+/// Writes \p count records, faster than one by one. \p records must point to room for them. \pre as
+/// above, for each
+void encodeWireEvents(const Event* events, std::size_t count, std::uint8_t* records);
+
 /// Appends \p count records to \p bytes, faster than one by one. \pre as above, for each
 void encodeWireEvents(const Event* events, std::size_t count, std::vector<std::uint8_t>& bytes);
 
