@@ -29,9 +29,11 @@
 /// in the dark by more).
 ///
 /// Thresholds are changed only if they differ from the given ones by more than the error of such a
-/// fit (6 to 10 %); the delay is multiplied by ln 2, the time at which an edge behind a low-pass
-/// reaches half of its height. An offset between the clocks is no low-pass: it belongs into
-/// `time_offset`.
+/// fit (6 to 10 %), and if that makes the residuals smaller by a tenth or so than the given ones
+/// with their best delay leave them: where pixels differ much in their thresholds, or events are
+/// noise, the fit prefers other values than the true ones by less. The delay is multiplied by ln 2,
+/// the time at which an edge behind a low-pass reaches half of its height. An offset between the
+/// clocks is no low-pass: it belongs into `time_offset`.
 ///
 /// Each pair is used until Settings::initial_fits were informative, then one in kRestFrames frames;
 /// also after kMaxUselessPairs consecutive pairs that were not. Of a pair of more than
@@ -125,10 +127,16 @@ class OnlineCalibration {
   std::size_t memoryBytes() const;
 
  private:
-  /// Weighted X'X and X'(r + X theta), theta = (c_on, c_off, delay in ms).
+  /// Weighted X'X, X'y and y'y with y = r + X theta, theta = (c_on, c_off, delay in ms).
   struct NormalEquations {
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
     Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+    double squares = 0.0;
+
+    /// Weighted sum of squares of the residuals that \p theta leaves.
+    double remaining(const Eigen::Vector3d& theta) const {
+      return squares - 2.0 * theta.dot(vector) + theta.dot(matrix * theta);
+    }
   };
   /// Of a pair's changes, as the frames and as the events tell them.
   class Agreement {
@@ -159,6 +167,7 @@ class OnlineCalibration {
   RowSample nextRows(std::uint64_t events);
   std::size_t fit(const RowSample& rows, NormalEquations& equations, Agreement& agreement) const;
   std::size_t fitRow(int y, NormalEquations& equations, Agreement& agreement) const;
+  double bestDelay(const ContrastThresholds& thresholds) const;
   void updateInForce();
 
   SensorSize size_;
