@@ -21,9 +21,17 @@ constexpr ContrastThresholds kTrue{0.25, 0.2};
 
 /// A sensor whose pixels see brightness ramps that start at different times: exact events of known
 /// thresholds, delayed as wanted, and frames that are exact means over their exposures.
+/// Thresholds of pixels are kTrue times `mean` in the mean, and differ by up to `spread` times
+/// kTrue from that.
 class RampScene {
  public:
-  explicit RampScene(std::int64_t delay_ns) {
+  struct Thresholds {
+    double mean = 1.0;
+    double spread = 0.0;
+  };
+
+  explicit RampScene(std::int64_t delay_ns) : RampScene(delay_ns, Thresholds()) {}
+  RampScene(std::int64_t delay_ns, const Thresholds& thresholds) : thresholds_(thresholds) {
     for (int y = 0; y < kSize.height; ++y) {
       for (int x = 0; x < kSize.width; ++x) {
         const bool up = (x + y) % 2 == 0;
@@ -82,18 +90,22 @@ class RampScene {
   }
 
   /// Log level as the events report it, without delay.
-  static double logLevel(int x, int y, std::int64_t t_ns) {
+  double logLevel(int x, int y, std::int64_t t_ns) const {
+    constexpr int kKinds = 11;
+    const double share = 2.0 * ((x * 5 + y * 7) % kKinds) / (kKinds - 1) - 1.0;
+    const double relative = thresholds_.mean + share * thresholds_.spread;
     const bool up = (x + y) % 2 == 0;
     double level = 0.0;
     for (int ramp = 0; ramp < kRamps; ++ramp) {
       const bool rises = up == (ramp % 2 == 0);
       for (int k = 1; k <= steps(rises); ++k) {
-        level += t_ns >= rampStart(x, y, ramp) + k * kStep_ns ? kTrue.step(rises) : 0.0;
+        level += t_ns >= rampStart(x, y, ramp) + k * kStep_ns ? relative * kTrue.step(rises) : 0.0;
       }
     }
     return level;
   }
 
+  Thresholds thresholds_;
   std::vector<Event> events_;
   std::unique_ptr<PixelEventLists> lists_;
 };
@@ -140,6 +152,19 @@ TEST(OnlineCalibration, LeavesRightThresholdsAlone) {
 TEST(OnlineCalibration, LeavesNearlyRightThresholdsAlone) {
   const ContrastThresholds nominal{0.96 * kTrue.on, 1.04 * kTrue.off};
   EXPECT_EQ(calibrated(RampScene(0), {nominal}, {true, true}).thresholds, nominal);
+}
+
+TEST(OnlineCalibration, BelievesACorrectionThatExplainsTheFramesBetter) {
+  constexpr double kLower = 0.9;
+  const Calibration found = calibrated(RampScene(0, {kLower, 0.0}), {kTrue}, {true, true});
+  EXPECT_NEAR(found.thresholds.on / kTrue.on, kLower, 0.02);
+  EXPECT_NEAR(found.thresholds.off / kTrue.off, kLower, 0.02);
+}
+
+TEST(OnlineCalibration, DoesNotBelieveItWherePixelsDifferByMore) {
+  const Calibration found = calibrated(RampScene(0, {0.9, 0.3}), {kTrue}, {true, true});
+  EXPECT_NEAR(found.thresholds.on / kTrue.on, 1.0, 0.01);
+  EXPECT_NEAR(found.thresholds.off / kTrue.off, 1.0, 0.01);
 }
 
 /// Of a delay, the part after which an edge behind a low-pass has half of its height.
