@@ -108,7 +108,10 @@ TEST_P(DeblurBagChunks, AreWhatTheToolsOfRosbagExpect) {
   EXPECT_THAT(info, HasSubstr("topic: /dvs/deblurred/image_raw"));
   const std::string compression = GetParam();
   EXPECT_THAT(info, HasSubstr("compression: " + compression));
-  run("rosbag check " + output);
+  // Not `rosbag check`: Python 3.13 breaks it for each type that is not installed.
+  run("mkdir " + file("plain") + " && rosbag decompress --quiet --output-dir " + file("plain") +
+      " " + output);
+  EXPECT_EQ(run(kMessages + file("plain/out.bag")), run(kMessages + output));
 }
 
 TEST_P(DeblurBagChunks, AreWrittenAnewInAnotherCompression) {
