@@ -14,7 +14,9 @@ namespace {
 
 constexpr std::size_t kBytesPerThread = std::size_t{16} << 20;
 constexpr std::size_t kWaitingFramesPerThread = 2;
-constexpr std::size_t kSpareBatches = 8;
+/// Emptied batches that are kept, unless a huge message has blown them up.
+constexpr std::size_t kSpareBatches = 4;
+constexpr std::size_t kSpareBytes = std::size_t{4} << 20;
 
 /// Which steps can be taken, and what they have left behind. The crew calls it by one thread at a
 /// time, apart from the work of the steps.
@@ -197,7 +199,7 @@ class ThreadedSteps {
             [this, batch] {
               busy_.writing = false;
               integrated_bytes_ -= batch->bytes;
-              if (spare_.size() < kSpareBatches) {
+              if (spare_.size() < kSpareBatches && batch->messages.capacity() <= kSpareBytes) {
                 batch->messages.clear();
                 spare_.push_back(std::move(batch->messages));
               }

@@ -42,6 +42,8 @@ class MessageBatch {
   std::vector<Entry>& entries() { return entries_; }
   /// Of messages and images.
   std::size_t bytes() const;
+  /// Of the memory for messages.
+  std::size_t capacity() const { return bytes_.capacity(); }
   bool isFull() const { return bytes_.size() >= kFullBytes; }
 
  private:

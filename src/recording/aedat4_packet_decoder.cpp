@@ -14,9 +14,6 @@ namespace {
 // Fields of a packet of events, IMU samples or triggers; an event is a struct.
 constexpr int kElements = 0;
 constexpr std::size_t kEventBytes = 16;
-/// Few enough to stay in the second cache until they are taken in.
-constexpr std::size_t kBlockEvents = 8192;
-static_assert(kBlockEvents <= kMaxItemEvents, "an item has one block");
 constexpr std::size_t kEventX = 8;
 constexpr std::size_t kEventY = 10;
 constexpr std::size_t kEventOn = 12;
@@ -87,7 +84,7 @@ bool Aedat4PacketDecoder::giveEvents(RecordingItem& item) {
 }
 
 bool Aedat4PacketDecoder::giveSomeEvents(RecordingItem& item) {
-  const std::size_t end = std::min(elements_.count, done_ + kBlockEvents);
+  const std::size_t end = std::min(elements_.count, done_ + kMaxItemEvents);
   events_.resize(std::max(events_.size(), end - done_));
   std::size_t count = 0;
   const std::uint8_t* element = elements_.data + done_ * kEventBytes;
