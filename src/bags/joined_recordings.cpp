@@ -32,6 +32,7 @@ void JoinedRecordings::connect(Reading& reading) {
                                    [&](const auto& entry) { return isSame(entry.second, wanted); });
     if (same != connections_.end()) {
       same->second.messages += connection.messages;
+      same->second.counted = same->second.counted && connection.counted;
       reading.ids[id] = same->first;
       continue;
     }

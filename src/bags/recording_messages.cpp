@@ -130,7 +130,8 @@ std::uint32_t RecordingMessages::connect(const std::string& topic) {
   (*connection.header)["type"] = connection.datatype;
   (*connection.header)["md5sum"] = connection.md5sum;
   (*connection.header)["message_definition"] = connection.definition;
-  connection.messages = 1;  // how many is not known before they are read
+  connection.messages = 1;
+  connection.counted = false;
   const std::uint32_t id = connection.id;
   connections_[id] = std::move(connection);
   return id;

@@ -134,8 +134,11 @@ std::string checkTopics(const TopicNames& topics, const Connections& connections
   std::set<std::string> lines;
   for (const auto& entry : connections) {
     std::ostringstream line;
-    line << "  " << entry.second.topic << "  " << entry.second.datatype << "  "
-         << entry.second.messages << " messages\n";
+    line << "  " << entry.second.topic << "  " << entry.second.datatype;
+    if (entry.second.counted) {
+      line << "  " << entry.second.messages << " messages";
+    }
+    line << "\n";
     lines.insert(line.str());
   }
   for (const std::string& line : lines) {

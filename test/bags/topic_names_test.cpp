@@ -81,6 +81,16 @@ TEST(GuessTopics, TrueFramesAndOutputsAreNoFrames) {
   EXPECT_EQ(guessTopics({}, connections).image, "/cam/image");
 }
 
+TEST(CheckTopics, ListsWhatIsThereWithTheMessagesWhereTheyWereCounted) {
+  Connections connections = otherDriver();
+  EXPECT_THAT(checkTopics({}, connections),
+              HasSubstr("/cam/events  dvs_msgs/EventArray  10 messages\n"));
+  for (auto& entry : connections) {
+    entry.second.counted = false;
+  }
+  EXPECT_THAT(checkTopics({}, connections), HasSubstr("/cam/events  dvs_msgs/EventArray\n"));
+}
+
 TEST(GuessTopics, AnIntegerIsAnExposureOnlyByItsName) {
   Connections connections = otherDriver();
   add<std_msgs::Int32>("/battery/level", connections);

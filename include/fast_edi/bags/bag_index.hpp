@@ -30,6 +30,7 @@ struct BagConnection {
   std::string definition;
   boost::shared_ptr<ros::M_string> header;  ///< all fields, as rosbag stores them
   std::uint64_t messages = 0;               ///< in the index; some may prove unreadable
+  bool counted = true;  ///< false: messages is 1, however many there will prove to be
 };
 
 using BagDamage = RecordingDamage;
