@@ -3,12 +3,18 @@
 #include <sstream>
 
 namespace fast_edi {
+namespace {
+
+constexpr char kOverrides[] = "key:=value";
+
+}  // namespace
 
 void ConfigFaults::add(const YAML::Node& where, const std::string& text) {
   std::string place = file_;
-  const YAML::Mark mark = where.IsDefined() ? where.Mark() : YAML::Mark::null_mark();
-  if (!mark.is_null() && !file_.empty()) {
-    place += ":" + std::to_string(mark.line + 1);
+  if (!file_.empty() && where.IsDefined()) {
+    // Values that replace those of the file stand in no line of it.
+    const YAML::Mark mark = where.Mark();
+    place = mark.is_null() ? kOverrides : file_ + ":" + std::to_string(mark.line + 1);
   }
   if (!place.empty()) {
     place += ": ";

@@ -15,7 +15,8 @@ class ConfigFaults {
   /// \param file name that begins each line of text(); may be empty
   explicit ConfigFaults(std::string file = {}) : file_(std::move(file)) {}
 
-  /// \param where the node at fault: its line is named when it comes from a file
+  /// \param where the node at fault: its line is named when it comes from a file, and that it was
+  /// given as key:=value when it does not although there is a file
   void add(const YAML::Node& where, const std::string& text);
 
   /// Adds the lines of \p others.

@@ -15,6 +15,7 @@
 namespace fast_edi {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -376,6 +377,18 @@ TEST_F(ParametersFromFile, OverridesReplaceValuesOfTheFile) {
   EXPECT_EQ(loaded.biases->off.fine, 2);
   EXPECT_EQ(loaded.ros.frame_id, "");
   EXPECT_FALSE(loaded.ros.lazy);
+}
+
+TEST_F(ParametersFromFile, FaultsOfOverridesAreNotBlamedOnTheFile) {
+  write("parameters.yaml", std::string(kThresholds) + "\nlazy: 3\n");
+  try {
+    parametersFromFile(path_, {"close_timeout_ms:=-3", "refference:=mid"});
+    FAIL();
+  } catch (const ParameterError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("key:=value: close_timeout_ms: found '-3'"));
+    EXPECT_THAT(error.what(), HasSubstr("key:=value: refference: unknown"));
+    EXPECT_THAT(error.what(), ContainsRegex("parameters.yaml:[0-9]+: lazy: found '3'"));
+  }
 }
 
 TEST(ApplyOverrides, WorksOnAnEmptyMap) {
