@@ -27,6 +27,7 @@ struct ParameterProposal {
   std::int64_t time_offset_us = 0;
   std::int64_t exposure_time_us = 0;  ///< 0: the exposure topic has it, or it cannot be told
   EventMapping event_mapping;
+  EventMapping given_mapping;  ///< that event_mapping takes the place of
   /// Where the given ones are wrong, or none are given, and the best ones are usual.
   std::optional<ContrastThresholds> thresholds;
   std::string offset_remark;  ///< what time_offset_us supposes, if anything

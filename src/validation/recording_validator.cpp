@@ -129,6 +129,7 @@ ValidationReport RecordingValidator::finish(std::function<void(int done, int tot
   }
   TimingVerdict verdict = judgeTiming(survey_, report.timing, by_events_);
   append(report.findings, checkMapping(survey_, report.timing, mapping_));
+  verdict.proposal.given_mapping = mapping_;
   verdict.proposal.event_mapping = combined(mapping_, report.timing.mapping);
   append(report.findings, std::move(verdict.findings));
   report.notes = std::move(verdict.notes);

@@ -24,16 +24,26 @@ void printSummary(std::ostream& out, const RecordingSurvey& survey) {
                 survey.statistics()->size().width, survey.statistics()->size().height);
 }
 
-/// Nothing where events are as they should be.
-std::string mappingLines(const EventMapping& mapping) {
+/// Nothing where events are as they should be, and were not given otherwise.
+std::string mappingLines(const EventMapping& mapping, const EventMapping& given) {
   std::string lines;
   if (mapping.polarity == EventPolarity::kInverted) {
     lines += "event_polarity: inverted\n";
+  } else if (given.polarity != mapping.polarity) {
+    lines += "event_polarity: normal\n";
   }
-  if (mapping.orientation != EventOrientation::kNormal) {
+  if (mapping.orientation != EventOrientation::kNormal ||
+      given.orientation != mapping.orientation) {
     lines += std::string("event_orientation: ") + toString(mapping.orientation) + "\n";
   }
   return lines;
+}
+
+/// Nothing where the given ones are right.
+std::string thresholdLines(const ParameterProposal& proposal) {
+  return proposal.thresholds ? textOf("contrast_threshold_on: %.2f\ncontrast_threshold_off: %.2f\n",
+                                      proposal.thresholds->on, proposal.thresholds->off)
+                             : std::string();
 }
 
 }  // namespace
@@ -64,7 +74,8 @@ void printReport(std::ostream& out, const RecordingSurvey& survey, const Validat
   out << "stamp_reference: " << instantName(proposal.stamp_reference) << "\n"
       << "time_offset_us: " << proposal.time_offset_us
       << (proposal.offset_remark.empty() ? "" : "  # " + proposal.offset_remark) << "\n"
-      << mappingLines(proposal.event_mapping) << "exposure_time_us: " << proposal.exposure_time_us
+      << mappingLines(proposal.event_mapping, proposal.given_mapping) << thresholdLines(proposal)
+      << "exposure_time_us: " << proposal.exposure_time_us
       << (proposal.exposure_time_us > 0 ? ""
           : by_topic                    ? "  # the exposure topic has it"
                                         : "  # not known: cannot be told, see the driver")

@@ -38,6 +38,30 @@ TEST(ReportTextTest, EndsWithLinesForAYamlFile) {
   EXPECT_EQ(yaml["exposure_time_us"].as<int>(), 0);
 }
 
+YAML::Node proposalIn(const std::string& text) {
+  const std::string intro = "proposal:\n\n";
+  return YAML::Load(text.substr(text.find(intro) + intro.size()));
+}
+
+TEST(ReportTextTest, ProposesThresholdsWhereThereAreBetterOnes) {
+  ValidationReport report;
+  EXPECT_FALSE(proposalIn(printed(report))["contrast_threshold_on"]);
+  report.proposal.thresholds = ContrastThresholds{0.358, 0.271};
+  const YAML::Node yaml = proposalIn(printed(report));
+  EXPECT_EQ(yaml["contrast_threshold_on"].as<double>(), 0.36);
+  EXPECT_EQ(yaml["contrast_threshold_off"].as<double>(), 0.27);
+}
+
+TEST(ReportTextTest, TakesAGivenMappingBackThatIsWrong) {
+  ValidationReport report;
+  EXPECT_FALSE(proposalIn(printed(report))["event_polarity"]);
+  EXPECT_FALSE(proposalIn(printed(report))["event_orientation"]);
+  report.proposal.given_mapping = {EventPolarity::kInverted, EventOrientation::kFlipX};
+  const YAML::Node yaml = proposalIn(printed(report));
+  EXPECT_EQ(yaml["event_polarity"].as<std::string>(), "normal");
+  EXPECT_EQ(yaml["event_orientation"].as<std::string>(), "normal");
+}
+
 TEST(ReportTextTest, FindingsSayWhatWasExpectedFoundAndIsToBeSet) {
   ValidationReport report;
   report.findings = {{"a-name", "this", "that", "something"}};
