@@ -164,6 +164,18 @@ TopicNames guessTopics(TopicNames topics, const Connections& connections) {
   return topics;
 }
 
+TopicNames guessUnnamedTopics(const TopicNames& topics, const Connections& connections) {
+  const TopicNames defaults;
+  TopicNames guessed = guessTopics(topics, connections);
+  for (std::string TopicNames::*topic :
+       {&TopicNames::events, &TopicNames::image, &TopicNames::exposure}) {
+    if (topics.*topic != defaults.*topic) {
+      guessed.*topic = topics.*topic;
+    }
+  }
+  return guessed;
+}
+
 std::string guessText(const TopicNames& wanted, const TopicNames& guessed,
                       const Connections& connections) {
   std::string text;

@@ -9,6 +9,8 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "fast_edi/bags/bag_error.hpp"
+
 namespace fast_edi {
 namespace tools {
 namespace {
@@ -42,6 +44,17 @@ po::typed_value<std::string>* textOption(std::string& target, const char* name) 
 
 void addForceOption(po::options_description& options, bool& overwrite) {
   options.add_options()("force", po::bool_switch(&overwrite), "replace outputs that exist");
+}
+
+TopicNames topicsIn(const MessageSource& recording, const TopicNames& named,
+                    const std::string& name) {
+  const TopicNames topics = guessUnnamedTopics(named, recording.connections());
+  std::cerr << guessText(named, topics, recording.connections());
+  const std::string faults = checkTopics(topics, recording.connections());
+  if (!faults.empty()) {
+    throw BagError(name + ": " + faults);
+  }
+  return topics;
 }
 
 void addTopicOptions(po::options_description& options, TopicNames& topics) {

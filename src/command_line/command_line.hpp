@@ -41,6 +41,13 @@ void addForceOption(boost::program_options::options_description& options, bool& 
 /// Adds --events, --image and --exposure.
 void addTopicOptions(boost::program_options::options_description& options, TopicNames& topics);
 
+/// The topics of a recording: those that were named, else the only ones of their types, of which a
+/// line on stderr tells.
+/// \param name of the recording, for messages
+/// \throws BagError naming what is missing and what is there
+TopicNames topicsIn(const MessageSource& recording, const TopicNames& named,
+                    const std::string& name);
+
 /// Reads the command line; answers --help, which \p options must have.
 /// \param words those that are no options, in order; nullptr when the tool takes none
 /// \return the values, for notify(); nothing when help was asked for and given

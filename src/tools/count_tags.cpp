@@ -210,11 +210,9 @@ int run(const Arguments& arguments) {
   const fast_edi::LoadedParameters parameters =
       tools::loadParametersFor(reader, arguments.config, arguments.overrides);
   tools::printWarnings(parameters);
-  TagCounter counter(arguments, parameters);
-  const std::string faults = fast_edi::checkTopics(arguments.topics, reader.connections());
-  if (!faults.empty()) {
-    throw fast_edi::BagError(fast_edi::nameOf(arguments.recordings) + ": " + faults);
-  }
+  Arguments used = arguments;
+  used.topics = tools::topicsIn(reader, arguments.topics, fast_edi::nameOf(arguments.recordings));
+  TagCounter counter(used, parameters);
   std::uint64_t malformed = 0;
   {
     fast_edi::ProgressBar bar("counting");

@@ -263,6 +263,23 @@ TEST_F(DeblurBagTool, NamesAMissingTopicAndThoseThatAreThere) {
   EXPECT_FALSE(fs::exists(output_));
 }
 
+TEST_F(DeblurBagTool, FindsTopicsOfOtherNames) {
+  const std::string other = directory_.file("other.bag");
+  {
+    const rosbag::Bag from(input_);
+    rosbag::Bag to(other, rosbag::bagmode::Write);
+    for (const rosbag::MessageInstance& message : rosbag::View(from)) {
+      to.write("/camera" + message.getTopic().substr(std::string("/dvs").size()), message.getTime(),
+               message);
+    }
+  }
+  const auto result = run("--in '" + other + "' --out '" + output_ + "'" + kThresholds);
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output,
+              HasSubstr("no messages on /dvs/image_raw: /camera/image_raw is taken as the frames"));
+  EXPECT_EQ(on(readRaw(output_), "/camera/deblurred/image_raw").size(), 10u);
+}
+
 TEST_F(DeblurBagTool, RefusesToDeblurTheSameRecordingTwice) {
   ASSERT_EQ(run(paths() + kThresholds).exit_code, 0);
   const std::string again = directory_.file("again.bag");

@@ -41,6 +41,10 @@ std::string checkTopics(const TopicNames& topics,
 TopicNames guessTopics(TopicNames topics,
                        const std::map<std::uint32_t, BagConnection>& connections);
 
+/// The same for topics that have their default names; others were named by somebody, and stay.
+TopicNames guessUnnamedTopics(const TopicNames& topics,
+                              const std::map<std::uint32_t, BagConnection>& connections);
+
 /// What guessTopics() did, for people: one line for each name that it changed, and one when there
 /// is no exposure topic but an std_msgs/Int32 that it might have meant. Empty when there is nothing
 /// to say.

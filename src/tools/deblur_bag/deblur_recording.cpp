@@ -99,13 +99,11 @@ BagDeblurReport deblur(MessageSource& reader, const Arguments& arguments,
 
 }  // namespace
 
-RecordingOutcome deblurRecording(const Arguments& arguments) {
-  const std::unique_ptr<MessageSource> reader = openMessages(arguments.inputs);
+RecordingOutcome deblurRecording(const Arguments& given) {
+  const std::unique_ptr<MessageSource> reader = openMessages(given.inputs);
+  Arguments arguments = given;
   const LoadedParameters parameters = loadParameters(arguments, *reader);
-  const std::string faults = checkTopics(arguments.topics, reader->connections());
-  if (!faults.empty()) {
-    throw BagError(nameOf(arguments.inputs) + ": " + faults);
-  }
+  arguments.topics = tools::topicsIn(*reader, given.topics, nameOf(given.inputs));
   const std::string compression =
       arguments.compression == "same" ? reader->compression() : arguments.compression;
   const bool is_one_of_many = !arguments.output_folder.empty();

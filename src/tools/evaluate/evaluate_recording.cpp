@@ -68,10 +68,7 @@ int evaluateRecording(const Arguments& arguments) {
   const OtherMethods others = otherMethods(arguments, incomplete);
   prepareReportFolder(arguments.output, arguments.overwrite);
   const DeblurParameters& parameters = loaded.deblur;
-  const std::string faults = checkTopics(arguments.topics, reader.connections());
-  if (!faults.empty()) {
-    throw BagError(nameOf(arguments.recordings) + ": " + faults);
-  }
+  const TopicNames topics = tools::topicsIn(reader, arguments.topics, nameOf(arguments.recordings));
   const RecordedFrames truth = readFrames(arguments.recordings, arguments.truth_topic);
   const FrameScorer scorer(arguments.scorer);
   int without_truth = 0;
@@ -90,7 +87,7 @@ int evaluateRecording(const Arguments& arguments) {
     ProgressBar bar("evaluating");
     BagMessage message;
     while (reader.next(message)) {
-      malformed += feed(message, arguments.topics, comparison) ? 0 : 1;
+      malformed += feed(message, topics, comparison) ? 0 : 1;
       bar.update(reader.position(), reader.length());
     }
     comparison.finish();
