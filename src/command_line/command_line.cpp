@@ -48,7 +48,7 @@ void addForceOption(po::options_description& options, bool& overwrite) {
 
 TopicNames topicsIn(const MessageSource& recording, const TopicNames& named,
                     const std::string& name) {
-  const TopicNames topics = guessUnnamedTopics(named, recording.connections());
+  TopicNames topics = guessUnnamedTopics(named, recording.connections());
   std::cerr << guessText(named, topics, recording.connections());
   const std::string faults = checkTopics(topics, recording.connections());
   if (!faults.empty()) {
