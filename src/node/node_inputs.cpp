@@ -35,13 +35,13 @@ NodeInputs::NodeInputs(const ros::NodeHandle& nh, const ros::NodeHandle& private
       nh_(nh),
       private_nh_(private_nh) {}
 
-/// roscpp calls one subscription's callbacks one at a time: \p last needs no lock.
+/// roscpp calls one subscription's callbacks one at a time: no lock is needed.
 template <typename Message>
 boost::function<void(const boost::shared_ptr<const Message>&)> NodeInputs::once(
     const std::function<void(const boost::shared_ptr<const Message>&)>& handler,
-    RepeatedPointers& last) const {
-  return [this, &handler, &last](const boost::shared_ptr<const Message>& message) {
-    if (last.repeats(message)) {
+    bool (RepeatedFrames::*came_twice)(const boost::shared_ptr<const void>&)) {
+  return [this, &handler, came_twice](const boost::shared_ptr<const Message>& message) {
+    if ((repeated_frames_.*came_twice)(message)) {
       handlers_.repeated();
     } else {
       handler(message);
@@ -67,13 +67,13 @@ void NodeInputs::update() {
   }
   if (!exposure_) {
     exposure_ = subscribe(nh_, "exposure", kExposureQueue,
-                          once(handlers_.exposure, repeated_exposures_), no_delay);
+                          once(handlers_.exposure, &RepeatedFrames::repeatsExposure), no_delay);
   }
   events_->update();
   if (!image_) {
     image_ = image_transport::ImageTransport(nh_).subscribe(
-        "image_raw", kImageQueue, once(handlers_.image, repeated_images_), ros::VoidPtr(),
-        image_transport::TransportHints("raw", no_delay, private_nh_));
+        "image_raw", kImageQueue, once(handlers_.image, &RepeatedFrames::repeatsImage),
+        ros::VoidPtr(), image_transport::TransportHints("raw", no_delay, private_nh_));
   }
   clock_.emplace(nh_, kTickPeriod, handlers_.tick);
   subscribed_ = true;

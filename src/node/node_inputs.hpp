@@ -75,12 +75,11 @@ class NodeInputs {
   template <typename Message>
   boost::function<void(const boost::shared_ptr<const Message>&)> once(
       const std::function<void(const boost::shared_ptr<const Message>&)>& handler,
-      RepeatedPointers& last) const;
+      bool (RepeatedFrames::*came_twice)(const boost::shared_ptr<const void>&));
 
   const Handlers handlers_;
   RepeatedArrays repeated_events_;
-  RepeatedPointers repeated_images_;
-  RepeatedPointers repeated_exposures_;
+  RepeatedFrames repeated_frames_;
   SequenceGaps image_gaps_;
   OverloadGuard overload_;
   std::unique_ptr<EventSubscription> events_;

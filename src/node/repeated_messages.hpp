@@ -9,8 +9,10 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include <boost/smart_ptr/shared_ptr.hpp>
 #include <boost/smart_ptr/weak_ptr.hpp>
@@ -36,6 +38,30 @@ class RepeatedPointers {
 
  private:
   boost::weak_ptr<const void> last_;  // so that no message lives longer
+};
+
+/// Frames and their exposure times. Frames may come on another thread than exposure times.
+class RepeatedFrames {
+ public:
+  bool repeatsImage(const boost::shared_ptr<const void>& image) {
+    if (images_.repeats(image)) {
+      return true;
+    }
+    ++frames_;
+    return false;
+  }
+  /// A message that comes again behind another frame is no repetition: a nodelet may publish one
+  /// message for as long as the exposure time does not change.
+  bool repeatsExposure(const boost::shared_ptr<const void>& exposure) {
+    const std::uint64_t before = std::exchange(frames_at_exposure_, frames_.load());
+    return exposures_.repeats(exposure) && frames_at_exposure_ == before;
+  }
+
+ private:
+  RepeatedPointers images_;
+  RepeatedPointers exposures_;
+  std::atomic<std::uint64_t> frames_{0};
+  std::uint64_t frames_at_exposure_ = 0;
 };
 
 /// Event arrays: each connection may decode its own.

@@ -45,6 +45,26 @@ TEST(RepeatedPointers, KnowTheMessageBeforeWhileSomebodyHasIt) {
   EXPECT_FALSE(pointers.repeats(boost::make_shared<const int>(1))) << "maybe at the same place";
 }
 
+TEST(RepeatedFrames, KnowFramesAndExposuresThatComeTwice) {
+  RepeatedFrames frames;
+  const auto frame = boost::make_shared<const int>(1);
+  const auto exposure = boost::make_shared<const int>(2);
+  EXPECT_FALSE(frames.repeatsImage(frame));
+  EXPECT_TRUE(frames.repeatsImage(frame));
+  EXPECT_FALSE(frames.repeatsExposure(exposure));
+  EXPECT_TRUE(frames.repeatsExposure(exposure));
+}
+
+TEST(RepeatedFrames, AnExposureThatIsPublishedAgainBehindAnotherFrameIsNone) {
+  RepeatedFrames frames;
+  const auto exposure = boost::make_shared<const int>(20'000);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(frames.repeatsImage(boost::make_shared<const int>(i)));
+    EXPECT_FALSE(frames.repeatsExposure(exposure)) << i;
+    EXPECT_TRUE(frames.repeatsExposure(exposure)) << i;
+  }
+}
+
 TEST(RepeatedArrays, KnowAnArrayByNumberSizeAndEnds) {
   const std::vector<std::uint8_t> records = recordsAt({kMs, 2 * kMs, 3 * kMs});
   const std::vector<std::uint8_t> copy = records;
