@@ -55,8 +55,9 @@ constexpr double kLargestDelay_ns =
 constexpr double kDoubtfulCorrection = 0.06;
 constexpr double kSureCorrection = 0.1;
 /// The same for the root mean square of residuals that the given thresholds leave, relative to that
-/// which the fit leaves. 1.21 to 1.28 on sensors of the choosing set whose given thresholds are 15
-/// % off, 1.06 and 1.08 on those that learned wrong ones from strong mismatch or noise.
+/// which the fit leaves. On the choosing set: 1.25 where the given thresholds are 15 % off, 1.28
+/// where a refractory time makes larger ones fit; 1.06 and 1.08 where strong mismatch or noise told
+/// wrong ones.
 constexpr double kDoubtfulImprovement = 1.08;
 constexpr double kSureImprovement = 1.16;
 /// ln 2: behind a first-order low-pass of time constant tau, events are late by tau in the mean,
