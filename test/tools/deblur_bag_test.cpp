@@ -263,6 +263,14 @@ TEST_F(DeblurBagTool, NamesAMissingTopicAndThoseThatAreThere) {
   EXPECT_FALSE(fs::exists(output_));
 }
 
+TEST_F(DeblurBagTool, RefusesTwoOutputsOfOneName) {
+  const auto refused = run(paths() + " --force --save-learned '" + directory_.file("x/../out.bag") +
+                           "'" + kThresholds);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output, HasSubstr("both --out and --save-learned name it"));
+  EXPECT_FALSE(fs::exists(output_));
+}
+
 TEST_F(DeblurBagTool, FindsTopicsOfOtherNames) {
   const std::string other = directory_.file("other.bag");
   {

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "command_line.hpp"
@@ -36,6 +38,27 @@ void refuseInput(const std::string& output, const std::vector<std::string>& inpu
   }
 }
 
+/// \throws std::runtime_error when two options name the same output
+void refuseSharedOutputs(const Arguments& arguments) {
+  std::map<std::filesystem::path, std::string> options;
+  const std::pair<const char*, const std::string&> outputs[] = {
+      {"--out", arguments.output},
+      {"--video", arguments.video},
+      {"--frames", arguments.frames},
+      {"--trust", arguments.trust},
+      {"--save-learned", arguments.save_learned}};
+  for (const auto& [option, path] : outputs) {
+    if (path.empty()) {
+      continue;
+    }
+    const auto [entry, is_new] = options.emplace(std::filesystem::weakly_canonical(path), option);
+    if (!is_new) {
+      throw std::runtime_error("cannot write " + path + ": both " + entry->second + " and " +
+                               option + " name it");
+    }
+  }
+}
+
 /// A deblurred frame, or one that was passed through; its exposure where that is known.
 void addTo(FrameFolder& folder, const sensor_msgs::Image& image, const OutputFrame& frame) {
   const ExposureInterval& exposure = frame.exposure;
@@ -46,6 +69,7 @@ void addTo(FrameFolder& folder, const sensor_msgs::Image& image, const OutputFra
 
 DeblurOutputs::DeblurOutputs(const Arguments& arguments, const std::string& compression)
     : arguments_(arguments) {
+  refuseSharedOutputs(arguments);
   const bool overwrite = arguments.overwrite;
   if (!arguments.video.empty()) {
     film_.emplace(arguments.video, arguments.film_rate_hz, overwrite);
