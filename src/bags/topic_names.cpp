@@ -151,29 +151,21 @@ std::string checkTopics(const TopicNames& topics, const Connections& connections
 }
 
 TopicNames guessTopics(TopicNames topics, const Connections& connections) {
-  if (!has(connections, topics.events)) {
+  const TopicNames defaults;
+  const auto may_be_another = [&](const std::string& topic, const std::string& default_name) {
+    return topic == default_name && !has(connections, topic);
+  };
+  if (may_be_another(topics.events, defaults.events)) {
     topics.events = onlyTopic(topicsOf(connections, expected<EventArray>()), topics.events);
   }
-  if (!has(connections, topics.image)) {
+  if (may_be_another(topics.image, defaults.image)) {
     topics.image = onlyTopic(topicsOf(connections, expected<sensor_msgs::Image>()), topics.image);
   }
-  if (!has(connections, topics.exposure)) {
+  if (may_be_another(topics.exposure, defaults.exposure)) {
     topics.exposure = onlyTopic(topicsOf(connections, expected<std_msgs::Int32>(), kExposureEnding),
                                 topics.exposure);
   }
   return topics;
-}
-
-TopicNames guessUnnamedTopics(const TopicNames& topics, const Connections& connections) {
-  const TopicNames defaults;
-  TopicNames guessed = guessTopics(topics, connections);
-  for (std::string TopicNames::*topic :
-       {&TopicNames::events, &TopicNames::image, &TopicNames::exposure}) {
-    if (topics.*topic != defaults.*topic) {
-      guessed.*topic = topics.*topic;
-    }
-  }
-  return guessed;
 }
 
 std::string guessText(const TopicNames& wanted, const TopicNames& guessed,

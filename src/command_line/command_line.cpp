@@ -6,6 +6,7 @@
 #include <iostream>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 
 #include <yaml-cpp/yaml.h>
 
@@ -46,9 +47,18 @@ void addForceOption(po::options_description& options, bool& overwrite) {
   options.add_options()("force", po::bool_switch(&overwrite), "replace outputs that exist");
 }
 
+void refuseInput(const std::string& output, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code ignored;  // one that does not exist is not the same
+    if (std::filesystem::equivalent(input, output, ignored)) {
+      throw std::runtime_error("cannot write " + output + ": it is the input");
+    }
+  }
+}
+
 TopicNames topicsIn(const MessageSource& recording, const TopicNames& named,
                     const std::string& name) {
-  TopicNames topics = guessUnnamedTopics(named, recording.connections());
+  TopicNames topics = guessTopics(named, recording.connections());
   std::cerr << guessText(named, topics, recording.connections());
   const std::string faults = checkTopics(topics, recording.connections());
   if (!faults.empty()) {

@@ -70,6 +70,9 @@ void requireRecordings(const std::vector<std::string>& words, std::vector<std::s
 /// \throws std::runtime_error when \p path exists and is not to be replaced, or is a directory
 void requireFree(const std::string& path, bool overwrite);
 
+/// \throws std::runtime_error when \p output is one of the inputs
+void refuseInput(const std::string& output, const std::vector<std::string>& inputs);
+
 /// \param config YAML file, or empty: the overrides alone
 /// \throws ParameterError
 LoadedParameters loadParameters(const std::string& config,

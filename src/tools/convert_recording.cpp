@@ -122,18 +122,6 @@ std::unique_ptr<fast_edi::Recording> openItems(const Arguments& arguments) {
   return std::make_unique<fast_edi::BagRecording>(arguments.inputs, arguments.topics);
 }
 
-void refuseInputAsOutput(const Arguments& arguments) {
-  // Outputs grow under the second name.
-  for (const std::string& output : {arguments.output, arguments.output + ".active"}) {
-    for (const std::string& input : arguments.inputs) {
-      std::error_code ignored;  // one that does not exist is not the same
-      if (fs::equivalent(input, output, ignored)) {
-        throw fast_edi::RecordingError("cannot write " + output + ": it is the input");
-      }
-    }
-  }
-}
-
 template <typename Use>
 Counts forEach(fast_edi::Recording& recording, Use use) {
   Counts counts;
@@ -236,7 +224,8 @@ int toBag(const Arguments& arguments) {
 }
 
 int run(const Arguments& arguments) {
-  refuseInputAsOutput(arguments);
+  tools::refuseInput(arguments.output, arguments.inputs);
+  tools::refuseInput(arguments.output + ".active", arguments.inputs);  // the name it grows under
   const std::string extension = extensionOf(arguments.output);
   if (extension == ".bag") {
     return toBag(arguments);

@@ -99,12 +99,7 @@ int run(const Arguments& arguments) {
                              reader.damage().front().what +
                              "); rosbag cannot play it, deblur_bag can read it");
   }
-  const fast_edi::TopicNames topics = fast_edi::guessTopics(arguments.topics, reader.connections());
-  std::cerr << fast_edi::guessText(arguments.topics, topics, reader.connections());
-  const std::string faults = fast_edi::checkTopics(topics, reader.connections());
-  if (!faults.empty()) {
-    throw fast_edi::BagError(arguments.bag + ": " + faults);
-  }
+  const fast_edi::TopicNames topics = tools::topicsIn(reader, arguments.topics, arguments.bag);
   writeParameters(arguments);
   std::cout << "seconds " << std::lround(std::ceil(reader.duration().toSec())) << "\n"
             << "namespace:=" << outputNamespace(topics) << "\n"

@@ -58,6 +58,15 @@ TEST(GuessTopics, KeepsNamesThatHaveMessages) {
   EXPECT_THAT(guessText({}, guessed, connections), IsEmpty());
 }
 
+TEST(GuessTopics, KeepsNamesThatSomebodyGave) {
+  TopicNames named;
+  named.image = "/cam/imagee";
+  const TopicNames guessed = guessTopics(named, otherDriver());
+  EXPECT_EQ(guessed.image, "/cam/imagee");
+  EXPECT_EQ(guessed.events, "/cam/events");
+  EXPECT_THAT(checkTopics(guessed, otherDriver()), HasSubstr("/cam/imagee"));
+}
+
 TEST(GuessTopics, AmongSeveralOfATypeTakesNone) {
   Connections connections = otherDriver();
   add<sensor_msgs::Image>("/cam/other", connections);

@@ -33,17 +33,14 @@ std::string topicNamespace(const std::string& topic);
 std::string checkTopics(const TopicNames& topics,
                         const std::map<std::uint32_t, BagConnection>& connections);
 
-/// For recordings of other drivers: where no message was recorded on `events` or `image`, the only
-/// topic that has the type is taken instead; as `exposure`, the only std_msgs/Int32 whose name ends
-/// in "exposure" (many other things are integers). Ambiguity leaves the names as they are, for
-/// checkTopics() to complain. True frames of a simulation (a part of the name being "ground_truth")
-/// and this package's own outputs are never taken.
+/// For recordings of other drivers: where `events` or `image` has its default name and no message
+/// was recorded there, the only topic that has the type is taken instead; as `exposure`, the only
+/// std_msgs/Int32 whose name ends in "exposure" (many other things are integers). Ambiguity leaves
+/// the names as they are, for checkTopics() to complain. True frames of a simulation (a part of the
+/// name being "ground_truth") and this package's own outputs are never taken. Other names were
+/// given by somebody, and stay.
 TopicNames guessTopics(TopicNames topics,
                        const std::map<std::uint32_t, BagConnection>& connections);
-
-/// The same for topics that have their default names; others were named by somebody, and stay.
-TopicNames guessUnnamedTopics(const TopicNames& topics,
-                              const std::map<std::uint32_t, BagConnection>& connections);
 
 /// What guessTopics() did, for people: one line for each name that it changed, and one when there
 /// is no exposure topic but an std_msgs/Int32 that it might have meant. Empty when there is nothing

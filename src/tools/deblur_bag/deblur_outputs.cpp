@@ -5,9 +5,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
-#include <vector>
 
 #include "command_line.hpp"
 
@@ -26,16 +24,6 @@ void printFilm(const FilmReport& film, const std::string& path) {
     std::cout << ", " << film.left_out << " images of another size or encoding left out";
   }
   std::cout << "\nwritten: " << path << "\n";
-}
-
-/// \throws std::runtime_error when \p output is one of the inputs
-void refuseInput(const std::string& output, const std::vector<std::string>& inputs) {
-  for (const std::string& input : inputs) {
-    std::error_code ignored;  // one that does not exist is not the same
-    if (std::filesystem::equivalent(input, output, ignored)) {
-      throw std::runtime_error("cannot write " + output + ": it is the input");
-    }
-  }
 }
 
 /// \throws std::runtime_error when two options name the same output
@@ -81,7 +69,7 @@ DeblurOutputs::DeblurOutputs(const Arguments& arguments, const std::string& comp
     trust_.emplace(arguments.trust, overwrite);
   }
   if (!arguments.save_learned.empty()) {
-    refuseInput(arguments.save_learned, arguments.inputs);
+    tools::refuseInput(arguments.save_learned, arguments.inputs);
     tools::requireFree(arguments.save_learned, overwrite);
     learned_.emplace(arguments.save_learned);
   }

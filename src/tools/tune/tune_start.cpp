@@ -20,13 +20,7 @@ namespace {
 TopicNames topicsOf(const Arguments& arguments, const MessageSource& recording) {
   TopicNames wanted = arguments.topics;
   wanted.output = "/tune";  // writes none: topics of deblurred frames may be there already
-  TopicNames topics = guessTopics(wanted, recording.connections());
-  std::cout << guessText(wanted, topics, recording.connections());
-  const std::string faults = checkTopics(topics, recording.connections());
-  if (!faults.empty()) {
-    throw std::runtime_error(nameOf(arguments.recordings) + ": " + faults);
-  }
-  return topics;
+  return tools::topicsIn(recording, wanted, nameOf(arguments.recordings));
 }
 
 }  // namespace
