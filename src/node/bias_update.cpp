@@ -52,7 +52,7 @@ class BiasFinder {
 
 }  // namespace
 
-std::optional<ContrastThresholds> thresholdsAfterBiasUpdate(
+std::optional<ThresholdUpdate> thresholdsAfterBiasUpdate(
     const LoadedParameters& loaded, const dynamic_reconfigure::Config& update) {
   const NeededThresholds needed = loaded.from_biases;
   if (!needed.on && !needed.off) {
@@ -75,15 +75,20 @@ std::optional<ContrastThresholds> thresholdsAfterBiasUpdate(
     throw std::invalid_argument("expected all biases in one update, found none of " +
                                 finder.missing());
   }
-  const ContrastThresholds derived = contrastFromBias(biases, needed);
-  ContrastThresholds thresholds = loaded.deblur.thresholds;
+  // Only a fine value of exactly 0; any other that cannot be is refused below.
+  const bool off_assumed = needed.off && biases.off.fine == 0;
+  const ContrastThresholds derived =
+      contrastFromBias(biases, {needed.on, needed.off && !off_assumed});
+  ThresholdUpdate result{loaded.deblur.thresholds, off_assumed};
   if (needed.on) {
-    thresholds.on = derived.on;
+    result.thresholds.on = derived.on;
   }
-  if (needed.off) {
-    thresholds.off = derived.off;
+  if (off_assumed) {
+    result.thresholds.off = result.thresholds.on;
+  } else if (needed.off) {
+    result.thresholds.off = derived.off;
   }
-  return thresholds;
+  return result;
 }
 
 }  // namespace fast_edi

@@ -24,7 +24,7 @@ void ParametersInForce::logContrast() const {
   const ContrastThresholds& thresholds = in_force_.deblur.thresholds;
   ROS_INFO_STREAM(name_ << ": contrast thresholds ON " << numberText(thresholds.on) << ", OFF "
                         << numberText(thresholds.off) << " from " << in_force_.contrast_origin);
-  for (const std::string& warning : contrastWarnings(thresholds)) {
+  for (const std::string& warning : in_force_.warnings) {
     ROS_WARN_STREAM(name_ << ": " << warning);
   }
 }
@@ -76,10 +76,20 @@ std::string ParametersInForce::followBiases(const dynamic_reconfigure::ConfigCon
 LoadedParameters ParametersInForce::withBiases(
     LoadedParameters parameters, const dynamic_reconfigure::ConfigConstPtr& biases) const {
   if (biases) {
-    const auto thresholds = thresholdsAfterBiasUpdate(parameters, *biases);
-    if (thresholds) {
-      parameters.deblur.thresholds = *thresholds;
+    const auto update = thresholdsAfterBiasUpdate(parameters, *biases);
+    if (update) {
+      parameters.deblur.thresholds = update->thresholds;
       parameters.contrast_origin = "biases on " + bias_topic_;
+      parameters.warnings = contrastWarnings(update->thresholds);
+      if (update->off_assumed) {
+        parameters.contrast_origin += ", OFF assumed to be as ON";
+        parameters.warnings.push_back(
+            "OffBn of the driver has no current (fine value 0), so that its biases say nothing "
+            "about the OFF "
+            "threshold: taken to be that of ON, " +
+            numberText(update->thresholds.off) +
+            "; set OFFBn_fine above 0 in the driver, or give " + "contrast_threshold_off");
+      }
     }
   }
   return parameters;

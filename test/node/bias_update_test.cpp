@@ -39,18 +39,17 @@ LoadedParameters loadedWith(NeededThresholds from_biases) {
 }
 
 TEST(BiasUpdate, ReplacesThresholdsThatCameFromBiases) {
-  const auto thresholds =
-      thresholdsAfterBiasUpdate(loadedWith({true, true}), makeUpdate(kDavis346));
-  ASSERT_TRUE(thresholds);
-  EXPECT_NEAR(thresholds->on, kOn, kTolerance);
-  EXPECT_NEAR(thresholds->off, kOff, kTolerance);
+  const auto update = thresholdsAfterBiasUpdate(loadedWith({true, true}), makeUpdate(kDavis346));
+  ASSERT_TRUE(update);
+  EXPECT_NEAR(update->thresholds.on, kOn, kTolerance);
+  EXPECT_NEAR(update->thresholds.off, kOff, kTolerance);
 }
 
 TEST(BiasUpdate, LeavesExplicitThresholdsAlone) {
   const auto one = thresholdsAfterBiasUpdate(loadedWith({true, false}), makeUpdate(kDavis346));
   ASSERT_TRUE(one);
-  EXPECT_NEAR(one->on, kOn, kTolerance);
-  EXPECT_EQ(one->off, 0.5);
+  EXPECT_NEAR(one->thresholds.on, kOn, kTolerance);
+  EXPECT_EQ(one->thresholds.off, 0.5);
   EXPECT_FALSE(thresholdsAfterBiasUpdate(loadedWith({false, false}), makeUpdate(kDavis346)));
 }
 
@@ -59,9 +58,9 @@ TEST(BiasUpdate, KeepsTheCapacitorRatioAndDropsTheConvention) {
   loaded.biases.emplace();
   loaded.biases->convention = CoarseConvention::kJaerXml;
   loaded.biases->capacitor_ratio = 130.0 / 3.0;
-  const auto thresholds = thresholdsAfterBiasUpdate(loaded, makeUpdate(kDavis346));
-  ASSERT_TRUE(thresholds);
-  EXPECT_NEAR(thresholds->on, kOn / 2.0, kTolerance);
+  const auto update = thresholdsAfterBiasUpdate(loaded, makeUpdate(kDavis346));
+  ASSERT_TRUE(update);
+  EXPECT_NEAR(update->thresholds.on, kOn / 2.0, kTolerance);
 }
 
 TEST(BiasUpdate, IgnoresUpdatesWithoutBiases) {
@@ -82,9 +81,43 @@ TEST(BiasUpdate, RefusesAnIncompleteUpdate) {
       << "OFFBn is not needed when the OFF threshold is explicit";
 }
 
-TEST(BiasUpdate, RefusesTheStockDriversOffBias) {
-  Ints ints = kDavis346;
-  ints[5].second = 0;
+/// What davis_ros_driver reports when nobody changes its biases: OFFBn has no current.
+const Ints kStockDriver = {{"DiffBn_coarse", 4}, {"DiffBn_fine", 39}, {"ONBn_coarse", 6},
+                           {"ONBn_fine", 200},   {"OFFBn_coarse", 4}, {"OFFBn_fine", 0}};
+
+TEST(BiasUpdate, TakesTheStockDriverForAsSensitiveToOffAsToOn) {
+  const std::string folder = FAST_EDI_SOURCE_DIR "/cfg/";
+  const auto update = thresholdsAfterBiasUpdate(parametersFromFile(folder + "davis346.yaml"),
+                                                makeUpdate(kStockDriver));
+  ASSERT_TRUE(update);
+  const ContrastThresholds shipped =
+      parametersFromFile(folder + "davis_ros_driver.yaml").deblur.thresholds;
+  EXPECT_NEAR(update->thresholds.on, shipped.on, kTolerance);
+  EXPECT_NEAR(update->thresholds.off, shipped.off, kTolerance);
+  EXPECT_TRUE(update->off_assumed);
+}
+
+TEST(BiasUpdate, TakesAnExplicitOnThresholdForOffToo) {
+  const auto update =
+      thresholdsAfterBiasUpdate(loadedWith({false, true}), makeUpdate(kStockDriver));
+  ASSERT_TRUE(update);
+  EXPECT_EQ(update->thresholds.on, 0.4);
+  EXPECT_EQ(update->thresholds.off, 0.4);
+}
+
+TEST(BiasUpdate, AssumesNothingWhereTheOffThresholdIsKnown) {
+  const auto both = thresholdsAfterBiasUpdate(loadedWith({true, true}), makeUpdate(kDavis346));
+  ASSERT_TRUE(both);
+  EXPECT_FALSE(both->off_assumed);
+  const auto given = thresholdsAfterBiasUpdate(loadedWith({true, false}), makeUpdate(kStockDriver));
+  ASSERT_TRUE(given);
+  EXPECT_EQ(given->thresholds.off, 0.5);
+  EXPECT_FALSE(given->off_assumed);
+}
+
+TEST(BiasUpdate, RefusesAnOffBiasOutOfRangeWithoutCurrent) {
+  Ints ints = kStockDriver;
+  ints[4].second = 8;
   EXPECT_THROW(thresholdsAfterBiasUpdate(loadedWith({true, true}), makeUpdate(ints)),
                std::invalid_argument);
 }

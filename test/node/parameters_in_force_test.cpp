@@ -22,11 +22,11 @@ constexpr char kBiases[] =
 constexpr double kOn = 0.260911;
 constexpr double kTolerance = 1e-5;
 
-dynamic_reconfigure::ConfigConstPtr makeUpdate(int diff_fine) {
+dynamic_reconfigure::ConfigConstPtr makeUpdate(int diff_fine, int off_fine = 1) {
   auto update = boost::make_shared<dynamic_reconfigure::Config>();
   const std::vector<std::pair<const char*, int>> ints = {
       {"DiffBn_coarse", 4}, {"DiffBn_fine", diff_fine}, {"ONBn_coarse", 5},
-      {"ONBn_fine", 255},   {"OFFBn_coarse", 4},        {"OFFBn_fine", 1}};
+      {"ONBn_fine", 255},   {"OFFBn_coarse", 4},        {"OFFBn_fine", off_fine}};
   for (const auto& [name, value] : ints) {
     update->ints.emplace_back();
     update->ints.back().name = name;
@@ -72,6 +72,21 @@ TEST_F(ParametersInForceTest, KeepsThemForBiasesWithoutAThreshold) {
   // What follows is combined with the last biases that could be used.
   EXPECT_EQ(parameters.change({{"weighting", "counter"}}).biases, "");
   EXPECT_EQ(parameters.get().deblur.thresholds, before);
+}
+
+TEST_F(ParametersInForceTest, SayThatTheOffThresholdOfADriverWithoutOneIsAssumed) {
+  ParametersInForce parameters = make(kBiases);
+  constexpr int kNoCurrent = 0;
+  EXPECT_EQ(parameters.followBiases(makeUpdate(39, kNoCurrent)), "");
+  const ContrastThresholds thresholds = parameters.get().deblur.thresholds;
+  EXPECT_NEAR(thresholds.on, kOn, kTolerance);
+  EXPECT_EQ(thresholds.off, thresholds.on);
+  EXPECT_EQ(parameters.get().contrast_origin, "biases on /biases, OFF assumed to be as ON");
+  EXPECT_THAT(parameters.get().warnings, ElementsAre(HasSubstr("set OFFBn_fine above 0")));
+  EXPECT_EQ(parameters.followBiases(makeUpdate(39)), "");
+  EXPECT_NE(parameters.get().deblur.thresholds.off, thresholds.off);
+  EXPECT_EQ(parameters.get().contrast_origin, "biases on /biases");
+  EXPECT_THAT(parameters.get().warnings, ::testing::IsEmpty());
 }
 
 TEST_F(ParametersInForceTest, ExplicitThresholdsTakePrecedence) {

@@ -134,23 +134,47 @@ TEST(DriverLaunch, DeblursRecordingsOfItsShape) {
   }
 }
 
+/// Biases that a driver reports, and the digits that thresholds from them begin with.
+struct ReportedBiases {
+  Settings biases;
+  std::string on;
+  std::string off;
+};
+
+const ReportedBiases kReported[] = {
+    {{{"DiffBn_coarse", 4},
+      {"DiffBn_fine", 92},
+      {"ONBn_coarse", 6},
+      {"ONBn_fine", 48},
+      {"OFFBn_coarse", 2},
+      {"OFFBn_fine", 160},
+      {"PrBp_coarse", 2},
+      {"exposure", kExposure_us}},
+     "0.231",
+     "0.237"},
+    // The defaults of davis_ros_driver, which leave the OFF threshold open.
+    {{{"DiffBn_coarse", 4},
+      {"DiffBn_fine", 39},
+      {"ONBn_coarse", 6},
+      {"ONBn_fine", 200},
+      {"OFFBn_coarse", 4},
+      {"OFFBn_fine", 0}},
+     "0.38",
+     "0.38"},
+};
+
 TEST(DriverLaunch, FollowsTheBiasesOfTheRunningDriver) {
   NodeClient client("/dvs", "/dvs/deblur", "deblurred", driver->shape.topics);
   FakeDriver server(driver->shape.node, {});
   ASSERT_TRUE(client.listen());
-  server.announce({{"DiffBn_coarse", 4},
-                   {"DiffBn_fine", 92},
-                   {"ONBn_coarse", 6},
-                   {"ONBn_fine", 48},
-                   {"OFFBn_coarse", 2},
-                   {"OFFBn_fine", 160},
-                   {"PrBp_coarse", 2},
-                   {"exposure", kExposure_us}});
-  EXPECT_TRUE(client.waitForReport([](const diagnostic_msgs::DiagnosticStatus& status) {
-    return valueOf(status, "Contrast threshold ON").rfind("0.231", 0) == 0 &&
-           valueOf(status, "Contrast threshold OFF").rfind("0.237", 0) == 0;
-  })) << valueOf(client.report(), "Contrast threshold ON")
-      << " " << valueOf(client.report(), "Contrast threshold OFF");
+  for (const ReportedBiases& reported : kReported) {
+    server.announce(reported.biases);
+    EXPECT_TRUE(client.waitForReport([&](const diagnostic_msgs::DiagnosticStatus& status) {
+      return valueOf(status, "Contrast threshold ON").rfind(reported.on, 0) == 0 &&
+             valueOf(status, "Contrast threshold OFF").rfind(reported.off, 0) == 0;
+    })) << valueOf(client.report(), "Contrast threshold ON")
+        << " " << valueOf(client.report(), "Contrast threshold OFF");
+  }
   EXPECT_TRUE(client.stopListening());
 }
 
