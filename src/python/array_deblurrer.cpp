@@ -6,7 +6,7 @@
 
 #include "fast_edi/base/parameter_ranges.hpp"
 #include "fast_edi/base/sensor_size.hpp"
-#include "fast_edi/exposure/stamp_limits.hpp"
+#include "python/time_unit.hpp"
 
 namespace fast_edi::python {
 namespace {
@@ -90,10 +90,9 @@ void ArrayDeblurrer::useRecordedExposures() {
 
 void ArrayDeblurrer::addFrame(const ImageView& image, int dimensions, std::int64_t stamp,
                               std::optional<std::int64_t> exposure) {
-  const std::int64_t last_stamp = kLastStamp_ns / unit_ns_;
-  if (stamp < 0 || stamp > last_stamp) {
-    throw std::invalid_argument("stamp is " + std::to_string(stamp) + ", expected 0.." +
-                                std::to_string(last_stamp));
+  if (stamp < 0 || stamp > lastTime(unit_ns_)) {
+    throw std::invalid_argument("stamp is " + std::to_string(stamp) + ", expected " +
+                                expectedTime(unit_ns_));
   }
   const std::int64_t shortest = std::max<std::int64_t>(kNanosecondsPerMicrosecond / unit_ns_, 1);
   const std::int64_t longest = kMaxExposure_ns / unit_ns_;

@@ -14,6 +14,8 @@
 #include "fast_edi/bags/topic_names.hpp"
 #include "fast_edi/pictures/open_pictures.hpp"
 #include "fast_edi/recording/open_recording.hpp"
+#include "pictures/picture.hpp"
+#include "python/picture_callback.hpp"
 #include "python/recording_items.hpp"
 
 namespace {
@@ -38,10 +40,26 @@ std::unique_ptr<fast_edi::python::RecordingItems> openItems(const std::string& p
   return std::make_unique<fast_edi::python::RecordingItems>(std::move(recording), unit_ns);
 }
 
+/// See pictureDecoder().
+pybind11::object decodePicture(const std::string& format, const pybind11::bytes& data) {
+  char* bytes = nullptr;
+  pybind11::ssize_t size = 0;
+  PyBytes_AsStringAndSize(data.ptr(), &bytes, &size);
+  fast_edi::Picture picture;
+  const std::string fault = [&] {
+    const pybind11::gil_scoped_release unlocked;
+    return fast_edi::decodeCompressed(
+        {format, reinterpret_cast<const std::uint8_t*>(bytes), static_cast<std::size_t>(size)},
+        picture);
+  }();
+  return fast_edi::python::pictureForPython(picture, fault);
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_bags, module) {
   pybind11::module::import("fast_edi._fast_edi");  // has the class that open_recording() returns
 
   module.def("open_recording", &openItems);
+  module.def("decode_picture", &decodePicture);
 }

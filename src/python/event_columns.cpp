@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "fast_edi/exposure/stamp_limits.hpp"
+#include "python/time_unit.hpp"
 
 namespace fast_edi::python {
 namespace {
@@ -84,6 +84,7 @@ struct EventLimits {
   std::int32_t last_x = 0;
   std::int32_t last_y = 0;
   std::int64_t last_time = 0;
+  std::int64_t unit_ns = 1;  ///< of times
 };
 
 /// Whether one of the events is to be refused, without branches, so that it costs little.
@@ -130,7 +131,7 @@ void requireAccepted(const EventColumns& columns, std::size_t begin, std::size_t
     const std::size_t index = begin + i;
     requireWithin(columns.x, index, block.x[i], 0, limits.last_x, upTo(limits.last_x));
     requireWithin(columns.y, index, block.y[i], 0, limits.last_y, upTo(limits.last_y));
-    requireWithin(columns.t, index, block.t[i], 0, limits.last_time, upTo(limits.last_time));
+    requireWithin(columns.t, index, block.t[i], 0, limits.last_time, expectedTime(limits.unit_ns));
     if (block.t[i] < before) {
       refuse(columns.t, index, block.t[i],
              "no less than " + std::to_string(before) + " before it: events in order of time");
@@ -200,7 +201,7 @@ WireEvents readEvents(const EventColumns& columns, SensorSize size, std::int64_t
   if (records.size() < total * kWireEventBytes) {
     records.resize(total * kWireEventBytes);
   }
-  const EventLimits limits = {size.width - 1, size.height - 1, kLastStamp_ns / unit_ns};
+  const EventLimits limits = {size.width - 1, size.height - 1, lastTime(unit_ns), unit_ns};
   std::int64_t before = 0;
   std::uint8_t* record = records.data();
   EventBlock block{};

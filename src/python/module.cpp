@@ -16,10 +16,12 @@
 #include "fast_edi/config/parameter_error.hpp"
 #include "fast_edi/recording/open_recording.hpp"
 #include "fast_edi/recording/recording_error.hpp"
+#include "fast_edi/recording/rosbag2_reader.hpp"
 #include "python/array_deblurrer.hpp"
 #include "python/event_columns.hpp"
 #include "python/image_array.hpp"
 #include "python/parameter_dict.hpp"
+#include "python/picture_callback.hpp"
 #include "python/recording_items.hpp"
 
 namespace {
@@ -190,9 +192,15 @@ py::list damage(RecordingItems& items) {
 }
 
 /// Nothing for what the reader of rosbags, or no reader, takes.
-std::unique_ptr<RecordingItems> openItems(const std::string& path, std::int64_t unit_ns) {
+/// \param decode see pictureDecoder()
+std::unique_ptr<RecordingItems> openItems(const std::string& path, std::int64_t unit_ns,
+                                          py::object decode) {
+  const fast_edi::PictureDecoder decoder = fast_edi::python::pictureDecoder(std::move(decode));
   const py::gil_scoped_release unlocked;
-  std::unique_ptr<fast_edi::Recording> recording = fast_edi::openRecording(path);
+  std::unique_ptr<fast_edi::Recording> recording =
+      fast_edi::formatOf(path) == fast_edi::RecordingFormat::kRosbag2
+          ? fast_edi::openRosbag2(path, decoder)
+          : fast_edi::openRecording(path);
   return recording ? std::make_unique<RecordingItems>(std::move(recording), unit_ns) : nullptr;
 }
 

@@ -1,5 +1,6 @@
 """The Python module: arrays in and out, and what it does with input that cannot be used."""
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -193,6 +194,8 @@ def test_frames_of_another_size_pass_through():
     ({**CONTRAST, "close_timeout_ms": 0}, "close_timeout_ms"),
     ({**CONTRAST, "contrast_threshold_on": float("nan")}, "contrast_threshold_on"),
     ({**CONTRAST, "time_unit": "s"}, "time_unit is 's', expected 'us' or 'ns'"),
+    ({**CONTRAST, "time_unit": None}, "time_unit is None, expected 'us' or 'ns'"),
+    ({**CONTRAST, "time_unit": ["us"]}, r"time_unit is \['us'\], expected 'us' or 'ns'"),
 ])
 def test_bad_parameters_are_named(parameters, message):
     with pytest.raises(ValueError, match=message):
@@ -203,6 +206,34 @@ def test_bad_parameters_are_named(parameters, message):
 def test_bad_sizes_are_named(size):
     with pytest.raises((TypeError, ValueError), match="sensor_size"):
         fast_edi.Deblurrer(size, **CONTRAST)
+
+
+DEMO = ROOT / "bags" / "demo.bag"
+
+
+def test_a_bad_unit_of_a_recording_is_named():
+    for unit in ("ms", ["us"], 1):
+        with pytest.raises(ValueError, match=re.escape(f"time_unit is {unit!r}, expected 'us' or 'ns'")):
+            fast_edi.open(DEMO, time_unit=unit)
+
+
+@pytest.mark.parametrize("of_recording, of_deblurrer", [("ns", "us"), ("us", "ns")])
+def test_recordings_in_another_unit_are_refused(of_recording, of_deblurrer):
+    deblurrer = fast_edi.Deblurrer((346, 260), time_unit=of_deblurrer, **CONTRAST)
+    with pytest.raises(ValueError, match=re.escape(
+            f"time_unit of the recording {DEMO} is '{of_recording}', expected '{of_deblurrer}' as of this Deblurrer")):
+        next(deblurrer.run(fast_edi.open(DEMO, time_unit=of_recording)))
+    assert deblurrer.counters["events_in"] == deblurrer.counters["frames_in"] == 0
+
+
+@pytest.mark.parametrize("unit, latest", [("us", 4_294_967_295_999_999), ("ns", 4_294_967_295_999_999_999)])
+def test_times_beyond_what_the_unit_allows_name_it(unit, latest):
+    deblurrer = fast_edi.Deblurrer(SIZE, time_unit=unit, **CONTRAST)
+    text = re.escape(f"is {latest + 1}, expected 0..{latest} (time_unit is '{unit}')")
+    with pytest.raises(ValueError, match=r"^t\[0\] " + text):
+        deblurrer.add_events([1], [1], [latest + 1], [1])
+    with pytest.raises(ValueError, match="^stamp " + text):
+        deblurrer.add_frame(frame(), latest + 1, 1_000)
 
 
 def test_files_that_cannot_be_opened(tmp_path):

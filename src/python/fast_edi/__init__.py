@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Iterator, NamedTuple, Union
 
 import numpy
 
-from . import _fast_edi
+from . import _fast_edi, _pictures
 from ._fast_edi import __version__
 
 if TYPE_CHECKING:
@@ -109,6 +109,8 @@ class Deblurrer:
                                               _integer("latent_rate_hz", latent_rate_hz, bits=32),
                                               _readable("config", config) if config is not None else "",
                                               parameters)
+        self.time_unit = time_unit
+        """Of all times that go in and come out."""
 
     def add_events(self, x: Any, y: Any = None, t: Any = None, p: Any = None, *,
                    lost_arrays: int = 0) -> None:
@@ -166,7 +168,10 @@ class Deblurrer:
         """The results of a whole recording, opened with the same time_unit.
 
         Where the recording has the exposure of each frame, stamp_reference and exposure_source are not
-        used."""
+        used. Raises ValueError for a recording that was opened with another time_unit."""
+        if recording.time_unit != self.time_unit:
+            raise ValueError(f"time_unit of the recording {recording.path} is {recording.time_unit!r}, expected "
+                             f"{self.time_unit!r} as of this Deblurrer")
         if recording.knows_exposures:
             self._deblurrer.use_recorded_exposures()
         for item in recording:
@@ -256,9 +261,11 @@ class Recording:
     cameras, those of the first one.
     """
 
-    def __init__(self, recording: _fast_edi.Recording, path: str) -> None:
+    def __init__(self, recording: _fast_edi.Recording, path: str, time_unit: str) -> None:
         self._recording = recording
         self.path = path
+        self.time_unit = time_unit
+        """Of the times of its items."""
         self.format = recording.format()
         streams = list(enumerate(recording.streams()))
         events = next((stream for _, stream in streams if stream[0] == "events"), None)
@@ -298,14 +305,14 @@ class Recording:
 def open(path: Path, *, time_unit: str = "us") -> Recording:
     """
     Opens a recording by its content: AEDAT4, AEDAT3.1, AEDAT2 and rosbag2 (ROS 2); rosbags of ROS 1, HDF5,
-    and folders or zip archives of pictures with text where the module was built with ROS. Compressed frames of a
-    rosbag2 are left out, which Recording.damage says.
+    and folders or zip archives of pictures with text where the module was built with ROS. Compressed frames
+    are decoded; without ROS that needs Pillow, and Recording.damage says where it is missing.
 
     Raises OSError when it cannot be read, ValueError when it is no recording that is read.
     """
     name = _readable("path", path, folder=True)
     unit_ns = _unit_ns(time_unit)
-    recording = _fast_edi.open_recording(name, unit_ns)
+    recording = _fast_edi.open_recording(name, unit_ns, _pictures.decode)
     missing = ""
     if recording is None:
         try:
@@ -317,7 +324,7 @@ def open(path: Path, *, time_unit: str = "us") -> Recording:
     if recording is None:
         raise ValueError(f"{name} is no recording that is read: it is neither AEDAT4, AEDAT3.1, AEDAT2 "
                          f"nor rosbag2, nor a rosbag, HDF5, or folder or archive of pictures with text{missing}")
-    return Recording(recording, name)
+    return Recording(recording, name, time_unit)
 
 
 def contrast_from_biases(path: Path) -> tuple[float, float]:
@@ -331,8 +338,8 @@ def contrast_from_biases(path: Path) -> tuple[float, float]:
     return _fast_edi.contrast_from_biases(_readable("path", path))
 
 
-def _unit_ns(time_unit: str) -> int:
-    if time_unit not in _UNITS_NS:
+def _unit_ns(time_unit: Any) -> int:
+    if not isinstance(time_unit, str) or time_unit not in _UNITS_NS:
         raise ValueError(f"time_unit is {time_unit!r}, expected 'us' or 'ns'")
     return _UNITS_NS[time_unit]
 
