@@ -151,6 +151,7 @@ BagDeblurReport BagDeblurrer::run() {
   report_.differing_clocks = status.differing_clocks;
   report_.thresholds = status.thresholds;
   report_.event_delay_ns = status.event_delay_ns;
+  report_.learned_pairs = status.learned_pairs;
   report_.damage = reader_.damage();
   report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report_;

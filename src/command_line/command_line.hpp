@@ -20,10 +20,11 @@ namespace tools {
 
 // Exit codes. Wrong arguments are a failure like any other.
 constexpr int kDone = 0;
-constexpr int kFailed = 1;           ///< no output
-constexpr int kFindings = 2;         ///< done, but something is wrong with the input
-constexpr int kInputIncomplete = 2;  ///< the same: cut short or damaged; the rest of it was used
-constexpr int kInterrupted = 128;    ///< plus the number of the signal, as shells have it
+constexpr int kFailed = 1;            ///< no output
+constexpr int kFindings = 2;          ///< done, but something is wrong with the input
+constexpr int kInputIncomplete = 2;   ///< the same: cut short or damaged; the rest of it was used
+constexpr int kNothingDeblurred = 3;  ///< done, but all frames are as they were
+constexpr int kInterrupted = 128;     ///< plus the number of the signal, as shells have it
 
 /// What --help prints around the options.
 struct HelpText {

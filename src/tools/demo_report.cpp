@@ -22,6 +22,7 @@
 #include <boost/program_options.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "bags/nothing_deblurred.hpp"
 #include "calibration/learned_contrast.hpp"
 #include "command_line.hpp"
 #include "evaluation/comparison_sheet.hpp"
@@ -515,6 +516,8 @@ void Report::print(std::ostream& out) const {
   printLatency(out, "image arrival to output", "Image to output",
                " (the wait for the exposure's last events included)");
   printLatency(out, "last message to output", "Close latency", "");
+  const std::string nothing = nothingDeblurred(counters, pipeline_.status().differing_clocks);
+  out << (nothing.empty() ? "" : nothing + "\n");
   const std::string remark = learnedContrastRemark(given_thresholds_, pipeline_.status().thresholds,
                                                    counters.calibration_fits);
   out << (remark.empty() ? "" : remark + "\n") << "\n";

@@ -11,6 +11,9 @@
 #include <system_error>
 #include <vector>
 
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
 #include "fast_edi/bags/file_lock.hpp"
 #include "rostest/child_process.hpp"
 #include "rostest/node_client.hpp"
@@ -120,6 +123,25 @@ TEST_F(DeblurManyBags, OneThatIsCutShortIsNamed) {
   EXPECT_THAT(written(), ElementsAre("cut.bag", "whole.bag"));
   EXPECT_THAT(result.output, AllOf(ContainsRegex(" 2  done\n +1  of these cut short or damaged\n"),
                                    HasSubstr("warning: cut short or damaged: " + cut)));
+}
+
+TEST_F(DeblurManyBags, OneWithoutADeblurredFrameIsNamed) {
+  const std::string good = makeBag("good.bag", 1);
+  const std::string without = path("without.bag");
+  {
+    const rosbag::Bag from(good);
+    rosbag::Bag to(without, rosbag::bagmode::Write);
+    const std::vector<std::string> topics = {"/dvs/events", "/dvs/image_raw"};
+    for (const rosbag::MessageInstance& message : rosbag::View(from, rosbag::TopicQuery(topics))) {
+      to.write(message.getTopic(), message.getTime(), message);
+    }
+  }
+  const auto result = run({without, good});
+  EXPECT_EQ(result.exit_code, 3) << result.output;
+  EXPECT_THAT(written(), ElementsAre("good.bag", "without.bag"));
+  EXPECT_THAT(result.output, AllOf(ContainsRegex(" 1  of these without any deblurred frame\n"),
+                                   HasSubstr("reason: exposure unknown"),
+                                   HasSubstr("warning: no frame was deblurred: " + without)));
 }
 
 TEST_F(DeblurManyBags, AnOutputThatExistsIsReplacedByForceAlone) {

@@ -312,22 +312,71 @@ TEST_F(DeblurBagTool, RefusesAWrongConfiguration) {
   EXPECT_FALSE(fs::exists(output_));
 }
 
+std::string lastLine(const std::string& output) {
+  const std::size_t end = output.find_last_not_of('\n');
+  return output.substr(output.rfind('\n', end) + 1);
+}
+
+TEST_F(DeblurBagTool, SaysWhenNoFrameWasDeblurred) {
+  const std::string options = paths() + " --force" + kThresholds + " exposure_source:=parameter";
+  const auto unknown = run(options);
+  EXPECT_EQ(unknown.exit_code, 3) << unknown.output;
+  EXPECT_THAT(
+      lastLine(unknown.output),
+      AllOf(HasSubstr("no frame was deblurred: 10 of 10 passed through unchanged, 10 for this "
+                      "reason: exposure unknown"),
+            HasSubstr("exposure_time_us:=")));
+  EXPECT_THAT(on(readRaw(output_), "/dvs/deblurred/image_raw"), SizeIs(kFrames));
+  const auto known = run(options + " exposure_time_us:=10000");
+  EXPECT_EQ(known.exit_code, 0) << known.output;
+  const auto asked_for = run(options + " passthrough:=true");
+  EXPECT_EQ(asked_for.exit_code, 0) << asked_for.output;
+  EXPECT_THAT(asked_for.output, Not(HasSubstr("no frame was deblurred")));
+}
+
 TEST_F(DeblurBagTool, SavesWhatItLearnedForTheNextRun) {
   const std::string learned = directory_.file("learned.yaml");
   const std::string save = " --save-learned '" + learned + "'";
-  const auto first = run(paths() + save + kThresholds);
+  // In the input of the other tests, events and frames have nothing to do with each other.
+  const std::string moving = directory_.file("moving.bag");
+  ASSERT_EQ(testing::runCommand(FAST_EDI_TOOLS_DIR "/simulate_davis --no-ground-truth --frames 10 "
+                                                   "--width 96 --height 72 --motion pan "
+                                                   "--texture natural --out '" +
+                                moving + "'")
+                .exit_code,
+            0);
+  const auto first = run("--in '" + moving + "' --out '" + directory_.file("first.bag") + "'" +
+                         save + kThresholds);
   ASSERT_EQ(first.exit_code, 0) << first.output;
   EXPECT_THAT(first.output, HasSubstr("written: " + learned));
   EXPECT_THAT(contents(learned),
               AllOf(HasSubstr("contrast_threshold_on: 0."), HasSubstr("event_delay_us: ")));
   // The next run starts there, and what the command line says comes before it.
   write(learned, "contrast_threshold_on: 0.4\ncontrast_threshold_off: 0.5\nevent_delay_us: 700\n");
-  const std::string again = paths() + " --force --learned '" + learned + "' refine_contrast:=false";
-  ASSERT_EQ(run(again + " refine_delay:=false" + save).exit_code, 0);
-  EXPECT_EQ(contents(learned),
-            "contrast_threshold_on: 0.4000\ncontrast_threshold_off: 0.5000\nevent_delay_us: 700\n");
-  ASSERT_EQ(run(again + " refine_delay:=false event_delay_us:=-50" + save).exit_code, 0);
-  EXPECT_THAT(contents(learned), HasSubstr("event_delay_us: -50\n"));
+  const std::string fixed = paths() +
+                            " --force refine_contrast:=false refine_delay:=false"
+                            " event_delay_us:=-50 ";
+  ASSERT_EQ(run(fixed + "--learned '" + learned + "'").exit_code, 0);
+  const std::string from_file = contents(output_);
+  ASSERT_EQ(run(fixed + "contrast_threshold_on:=0.4 contrast_threshold_off:=0.5").exit_code, 0);
+  EXPECT_TRUE(contents(output_) == from_file);
+}
+
+TEST_F(DeblurBagTool, SavesNothingWhereNothingWasLearned) {
+  const std::string learned = directory_.file("learned.yaml");
+  const std::string save = paths() + " --force --save-learned '" + learned + "'" + kThresholds;
+  const auto still = run(save + " exposure_source:=parameter");
+  EXPECT_EQ(still.exit_code, 3) << still.output;
+  EXPECT_FALSE(fs::exists(learned));
+  EXPECT_FALSE(fs::exists(learned + ".active"));
+  write(learned, "# of an earlier recording\n");
+  const auto off = run(save + " refine_contrast:=false refine_delay:=false");
+  EXPECT_EQ(off.exit_code, 0) << off.output;
+  EXPECT_THAT(
+      off.output,
+      AllOf(HasSubstr("warning: not written: " + learned + ": nothing was learned"),
+            HasSubstr("refine_contrast or refine_delay"), Not(HasSubstr("\nwritten: " + learned))));
+  EXPECT_EQ(contents(learned), "# of an earlier recording\n");
 }
 
 TEST_F(DeblurBagTool, RefusesToReplaceWhatWasLearned) {

@@ -238,7 +238,7 @@ TEST_F(InputForms, SaysWhatIsMissing) {
       << "#!AER-DAT2.0\r\n# AEChip: eu.seebetter.ini.chips.davis.DAVIS240C\r\n"
       << std::string("\0\0\x8\0\0\0\0\x1", 8);
   result = runCommand(kTools + "deblur_bag --in " + path + kThresholds + " --out " + file("y.bag"));
-  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_EQ(result.exit_code, 3) << result.output;
   EXPECT_THAT(result.output, HasSubstr("has no frames on /dvs/image_raw: nothing was deblurred"));
 }
 

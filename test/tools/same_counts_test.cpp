@@ -132,8 +132,10 @@ class SameCountsTest : public ::testing::Test {
   Counts byDeblurBag(const std::string& bag) {
     const CommandResult result = runCommand(kTools + "deblur_bag --force --in " + bag + " --out " +
                                             directory_.file("out.bag") + kParameters);
-    EXPECT_EQ(result.exit_code, 0) << result.output;
-    return countsOf(result.output, "  of these without any event", "  of these: ");
+    const Counts counts = countsOf(result.output, "  of these without any event", "  of these: ");
+    constexpr int kNothingDeblurred = 3;
+    EXPECT_EQ(result.exit_code, counts.deblurred > 0 ? 0 : kNothingDeblurred) << result.output;
+    return counts;
   }
   static Counts byValidateBag(const std::string& bag) {
     const CommandResult result = runCommand(kTools + "validate_bag " + bag + kParameters);

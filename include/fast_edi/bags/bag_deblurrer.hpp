@@ -32,6 +32,7 @@ struct BagDeblurReport {
   ContrastThresholds given_thresholds;
   ContrastThresholds thresholds;    ///< in force at the end: given or learned
   std::int64_t event_delay_ns = 0;  ///< the same
+  int learned_pairs = 0;            ///< of frames that these were learned from; 0: given
   double seconds = 0.0;             ///< wall clock
   ros::Time last_record_time;       ///< of the last readable message
   bool interrupted = false;         ///< ended before the end of the input, because asked to

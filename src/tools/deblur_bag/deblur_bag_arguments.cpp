@@ -48,8 +48,10 @@ po::options_description describeOptions(Arguments& arguments) {
       "config", po::value(&arguments.config)->value_name("YAML"),
       "parameters, e.g. cfg/davis346.yaml; not needed when both contrast thresholds are given as "
       "name:=value");
-  options.add_options()("save-learned", po::value(&arguments.save_learned)->value_name("YAML"),
-                        "file for the contrast thresholds and the event delay in force at the end")(
+  options.add_options()(
+      "save-learned", po::value(&arguments.save_learned)->value_name("YAML"),
+      "file for the contrast thresholds and the event delay that were learned; not written if "
+      "nothing was")(
       "learned", po::value(&arguments.learned)->value_name("YAML"),
       "such a file of an earlier recording: start from these values instead of those of --config");
   tools::addTopicOptions(options, topics);
@@ -88,7 +90,9 @@ tools::HelpText helpText() {
       "0 done; 1 failed, no output, with --out-dir of at least one recording; 2 the input was cut "
       "short\nor damaged: all of it that could be read is in the output, which is complete and "
       "indexed; 130, 143\ninterrupted by Ctrl-C or SIGTERM: the output is complete and indexed up "
-      "to there (with --out-dir,\nthere is none of this recording and those behind it)."};
+      "to there (with --out-dir,\nthere is none of this recording and those behind it); 3 done, "
+      "but no "
+      "frame was deblurred, with\n--out-dir of at least one recording: the last line says why."};
 }
 
 void requireOutput(const Arguments& arguments) {

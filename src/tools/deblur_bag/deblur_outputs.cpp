@@ -99,8 +99,9 @@ void DeblurOutputs::close(const BagDeblurReport& report) {
   if (bag_) {
     bag_->close();
   }
-  if (learned_) {
+  if (learned_ && report.learned_pairs > 0) {
     learned_->write(report.thresholds, report.event_delay_ns);
+    is_learned_written_ = true;
   }
   if (film_) {
     film_->close();
@@ -117,7 +118,7 @@ void DeblurOutputs::print() const {
   if (bag_) {
     std::cout << "written: " << arguments_.output << "\n";
   }
-  if (learned_) {
+  if (is_learned_written_) {
     std::cout << "written: " << arguments_.save_learned << "\n";
   }
   if (film_) {
@@ -134,6 +135,12 @@ void DeblurOutputs::print() const {
 }
 
 bool DeblurOutputs::reportLeftOut() const {
+  if (learned_ && !is_learned_written_) {
+    std::cerr
+        << "warning: not written: " << arguments_.save_learned
+        << ": nothing was learned. Expected: filter, and refine_contrast or refine_delay, are "
+           "on, and consecutive frames with motion are deblurred\n";
+  }
   if (!folder_ || folder_->leftOut() == 0) {
     return true;
   }

@@ -47,6 +47,7 @@ class DeblurOutputs {
   std::optional<FrameFolder> folder_;
   std::optional<FrameFolder> trust_;
   std::optional<LearnedFile> learned_;
+  bool is_learned_written_ = false;
   std::optional<BagWriter> bag_;
 };
 

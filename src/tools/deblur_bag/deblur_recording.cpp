@@ -9,6 +9,7 @@
 
 #include <boost/program_options.hpp>
 
+#include "bags/nothing_deblurred.hpp"
 #include "command_line.hpp"
 #include "fast_edi/bags/bag_error.hpp"
 #include "fast_edi/bags/message_source.hpp"
@@ -128,6 +129,11 @@ RecordingOutcome deblurRecording(const Arguments& given) {
   printInterruption(*reader, report, is_one_of_many);
   if (report.interrupted) {
     return {report, tools::kInterrupted + tools::interruptingSignal()};
+  }
+  const std::string nothing = nothingDeblurred(report.counters, report.differing_clocks);
+  if (!nothing.empty()) {
+    std::cerr << "deblur_bag: " << nothing << "\n";
+    return {report, tools::kNothingDeblurred};
   }
   return {report, is_whole ? tools::kDone : tools::kInputIncomplete};
 }

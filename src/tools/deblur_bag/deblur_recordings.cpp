@@ -39,7 +39,10 @@ class Totals {
   void add(const std::string& recording, const RecordingOutcome& outcome) {
     const BagDeblurReport& report = outcome.report;
     ++done_;
-    if (outcome.exit_code == tools::kInputIncomplete) {
+    if (outcome.exit_code == tools::kNothingDeblurred) {
+      not_deblurred_.push_back(recording);
+    }
+    if (report.incomplete()) {
       incomplete_.push_back(recording);
     }
     frames_in_ += report.counters.frames_in;
@@ -55,6 +58,9 @@ class Totals {
     if (!failed_.empty()) {
       return tools::kFailed;
     }
+    if (!not_deblurred_.empty()) {
+      return tools::kNothingDeblurred;
+    }
     return incomplete_.empty() ? tools::kDone : tools::kInputIncomplete;
   }
 
@@ -63,6 +69,7 @@ class Totals {
     std::cout << "\nall recordings\n";
     printCount(done_, "done");
     printCount(incomplete_.size(), "of these cut short or damaged");
+    printCount(not_deblurred_.size(), "of these without any deblurred frame");
     printCount(failed_.size(), "failed");
     printCount(recordings - done_ - failed_.size(), "not done: interrupted");
     printCount(frames_in_, "frames in");
@@ -74,6 +81,9 @@ class Totals {
               << std::flush;
     for (const std::string& recording : incomplete_) {
       std::cerr << "warning: cut short or damaged: " << recording << "\n";
+    }
+    for (const std::string& recording : not_deblurred_) {
+      std::cerr << "warning: no frame was deblurred: " << recording << "\n";
     }
     for (const std::string& failure : failed_) {
       std::cerr << "failed: " << failure << "\n";
@@ -87,6 +97,7 @@ class Totals {
 
   std::uint64_t done_ = 0;
   std::vector<std::string> incomplete_;
+  std::vector<std::string> not_deblurred_;
   std::vector<std::string> failed_;
   std::uint64_t frames_in_ = 0;
   std::uint64_t frames_deblurred_ = 0;
