@@ -201,6 +201,15 @@ TEST_F(EventStreamTest, AnArrayWithoutAValidSizeIsRefusedAtTheStartToo) {
   EXPECT_EQ(stream.lists(), nullptr);
 }
 
+TEST_F(EventStreamTest, SensorsOfOnePixelAndOfTheLongestSidesAreValid) {
+  for (const SensorSize size : {SensorSize{1, 1}, SensorSize{32767, 1}, SensorSize{1, 32767}}) {
+    take({kStart}, size);
+    ASSERT_NE(stream.lists(), nullptr);
+    EXPECT_EQ(stream.lists()->size(), size);
+  }
+  EXPECT_EQ(counters.event_arrays_refused, 0u);
+}
+
 TEST_F(EventStreamTest, AnotherSizeEmptiesTheListsAndIsCounted) {
   take({kStart, kStart + kMs});
   take({kStart + 2 * kMs}, {8, 8});

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "latent/slow_flow.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -124,6 +126,38 @@ TEST(OpticalFlow, OfMirroredImagesIsMirroredUpToTheBorder) {
     for (std::size_t i = 0; i < found.size(); ++i) {
       ASSERT_NEAR(back[i].x, rows ? found[i].x : -found[i].x, kRounding_px) << rows << ", " << i;
       ASSERT_NEAR(back[i].y, rows ? -found[i].y : found[i].y, kRounding_px) << rows << ", " << i;
+    }
+  }
+}
+
+/// From the smallest of one level to one of all four, of odd and even sides, with displacements
+/// that leave the image at all borders.
+TEST(OpticalFlow, IsTheOneOfASlowReference) {
+  for (const SensorSize size : {SensorSize{20, 24},
+                                {31, 30},
+                                {31, 32},
+                                {32, 31},
+                                {63, 62},
+                                {64, 65},
+                                {127, 125},
+                                {128, 131}}) {
+    const Mapping turning = [size](int x, int y) {
+      const auto dx = static_cast<float>(x) - 0.4F * static_cast<float>(size.width);
+      const auto dy = static_cast<float>(y) - 0.6F * static_cast<float>(size.height);
+      return Displacement{0.7F + 0.04F * dx - 0.03F * dy, -0.4F + 0.02F * dx + 0.05F * dy};
+    };
+    const std::vector<float> to = render(size, waves, kStill);
+    const std::vector<float> from = render(size, waves, turning);
+    OpticalFlow flow(size);
+    flow.setTarget(to.data());
+    const std::vector<Displacement>& found = flow.from(from.data());
+    const testing::SlowFlow::Flow expected = testing::SlowFlow::between(size, from, to);
+    ASSERT_EQ(found.size(), expected.values.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ASSERT_NEAR(static_cast<double>(found[i].x), expected.values[i].x, 1e-3)
+          << i << " of " << size.width << " x " << size.height;
+      ASSERT_NEAR(static_cast<double>(found[i].y), expected.values[i].y, 1e-3)
+          << i << " of " << size.width << " x " << size.height;
     }
   }
 }

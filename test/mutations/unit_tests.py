@@ -12,6 +12,7 @@ import subprocess
 QUICK_SUITE_MS = 100
 BUILD_LIMIT_S = 1200
 COMPILE_LIMIT_S = 300
+HINT_LIMIT_S = 60
 MEMORY_LIMIT = 8 << 30  # bytes of addresses; a change may ask for any amount
 
 
@@ -26,6 +27,7 @@ class UnitTests:
         self.root, self.build_folder, self.library, self.program = root, build, library, program
         self.changed = build / "changed"
         self.suites = {}  # how long each takes, ms
+        self.names = set()  # of all tests
 
     def build(self):
         """Whether the tests of the sources as they are compile."""
@@ -42,6 +44,7 @@ class UnitTests:
         fault, output = self.run_program("*", BUILD_LIMIT_S)
         self.suites = {name: int(time_ms) for name, time_ms in
                        re.findall(r"^\[-+\] \d+ tests? from ([^\s,]+).* \((\d+) ms total\)", output, re.M)}
+        self.names = set(re.findall(r"^\[ RUN      \] (\S+)", output, re.M))
         return fault
 
     def own_suites(self, path):
@@ -51,14 +54,18 @@ class UnitTests:
             names.update(re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+),", test.read_text(), re.M))
         return {suite for suite in self.suites if names.intersection(suite.split("/"))}
 
-    def first_failure(self, path, use_changed=True):
+    def first_failure(self, path, hint="", own_only=False, use_changed=True):
         """Which test failed first, or how else the program ended; empty if all passed.
 
-        The suites of the source's folder run first, as the likeliest to notice, and the quick ones before the slow.
+        The hint, a test that failed before, runs first; then the suites of the source's folder, as the likeliest to
+        notice; then all others, if asked for. The quick ones of each come before the slow.
         """
+        if hint:
+            fault, _ = self.run_program(hint, HINT_LIMIT_S, use_changed)
+            if fault:
+                return fault
         own = self.own_suites(path)
-        rest = set(self.suites) - own
-        for suites in (own, rest):
+        for suites in (own, set() if own_only else set(self.suites) - own):
             for quick in (True, False):
                 batch = {suite for suite in suites if (self.suites[suite] <= QUICK_SUITE_MS) == quick}
                 if batch:
