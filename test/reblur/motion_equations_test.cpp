@@ -1,6 +1,8 @@
 #include "reblur/motion_equations.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -109,6 +111,77 @@ TEST(MotionEquations, MeasuresWayAndDeviation) {
   EXPECT_NEAR(linear.equations.variance(), 1e-6, 1e-9);
   EXPECT_GT(fitted.deviation_px, 0.0F);
   EXPECT_LT(fitted.deviation_px, 0.001F);
+}
+
+/// Gradients along one part of the motion each: the parts do not depend on each other, so that
+/// their deviations, and what is expected of them beforehand, add up in closed form.
+TEST(MotionEquations, DeviationIsThatOfThePartsAndOfWhatIsExpected) {
+  constexpr double kSquares[] = {5.0, 3.0, 0.4, 0.6, 0.02, 0.01};
+  constexpr double kUsualVelocities_px[] = {30.0, 30.0, 30.0, 30.0, 3.0, 3.0};
+  constexpr double kUsualCurvatures_px[] = {10.0, 10.0, 10.0, 10.0, 3.0, 3.0};
+  constexpr double kVariance = 0.5;
+  FittedMotion fitted =
+      motionOf({3.0F, 4.0F, 1.0F, -0.5F, 0.3F, 0.2F}, {1.0F, -0.5F, 0.2F, 0.1F, 0.0F, 0.1F}, 1.0F);
+  MotionEquations equations;
+  for (const double tau : kTaus) {
+    MotionEquations::Sums sums;
+    for (std::size_t part = 0; part < ImageMotion::kParts; ++part) {
+      sums.squares[part][part] = static_cast<float>(kSquares[part]);
+    }
+    sums.weight = 40.0F;
+    sums.residuals = 20.0F;
+    equations.add(sums, tau);
+  }
+  EXPECT_DOUBLE_EQ(equations.variance(), kVariance);
+  equations.addPriors(fitted);
+  equations.measure(kSize, fitted);
+
+  double ways = 0.0;
+  double reach = 0.0;
+  double largest = 0.0;
+  for (const auto& [x_px, y_px] :
+       {std::pair{0.0F, 0.0F}, {159.0F, 0.0F}, {0.0F, 119.0F}, {159.0F, 119.0F}, {79.5F, 59.5F}}) {
+    const auto x = static_cast<double>(fitted.motion.relativeX(x_px));
+    const auto y = static_cast<double>(fitted.motion.relativeY(y_px));
+    const double basis_x[] = {1.0, 0.0, x, -y, x * x, x * y};
+    const double basis_y[] = {0.0, 1.0, y, x, x * y, y * y};
+    for (const double tau : {-1.0, 1.0}) {
+      const Displacement u = fitted.motion.displacement(x_px, y_px, static_cast<float>(tau));
+      const double way = std::hypot(static_cast<double>(u.x), static_cast<double>(u.y));
+      ways += way;
+      reach = std::max(reach, way);
+      double variance = 0.0;
+      for (std::size_t part = 0; part < ImageMotion::kParts; ++part) {
+        // The normal equations of velocity and curvature of one part.
+        double vv = kVariance / std::pow(kUsualVelocities_px[part], 2);
+        double cc = kVariance / std::pow(kUsualCurvatures_px[part], 2);
+        double vc = 0.0;
+        for (const double at : kTaus) {
+          vv += kSquares[part] * std::pow(at, 2);
+          vc += kSquares[part] * std::pow(at, 3);
+          cc += kSquares[part] * std::pow(at, 4);
+        }
+        const double of_displacement =
+            (tau * tau * cc - 2.0 * tau * vc + vv) / (vv * cc - vc * vc);  // tau^2 is 1
+        variance += 4.0 * kVariance * of_displacement *
+                    (std::pow(basis_x[part], 2) + std::pow(basis_y[part], 2)) / 2.0;
+      }
+      largest = std::max(largest, variance);
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(fitted.path_px), ways / 5.0, 1e-5);
+  EXPECT_NEAR(static_cast<double>(fitted.reach_px), reach, 1e-5);
+  EXPECT_NEAR(static_cast<double>(fitted.deviation_px), std::sqrt(largest), 1e-5);
+}
+
+TEST(MotionEquations, TheVarianceOfNothingIsNotZero) {
+  EXPECT_EQ(MotionEquations().variance(), 1e-6);
+  MotionEquations::Sums sums;
+  sums.weight = 0.5F;
+  sums.residuals = 0.25F;
+  MotionEquations equations;
+  equations.add(sums, 1.0);
+  EXPECT_EQ(equations.variance(), 0.25);  // of less than a pixel as of one
 }
 
 }  // namespace

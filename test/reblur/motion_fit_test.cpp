@@ -8,6 +8,7 @@
 
 #include "fast_edi/events/event_counts.hpp"
 #include "reblur/moving_plane.hpp"
+#include "reblur/slow_motion_fit.hpp"
 #include "support/event_generators.hpp"
 
 namespace fast_edi {
@@ -54,30 +55,56 @@ class MotionFitTest : public ::testing::Test {
     lists.append(testing::wireView(testing::toWire(sequence.events)));
     EventCounts counts(kPlaneSize);
     counts.count(lists, frame.exposure);
-    std::vector<float> mean_counts(kPlaneSize.pixelCount());
-    std::vector<float> log_image;
+    mean_counts_.resize(kPlaneSize.pixelCount());
+    log_image_.clear();
     for (int y = 0; y < kPlaneSize.height; ++y) {
       for (int x = 0; x < kPlaneSize.width; ++x) {
-        log_image.push_back(
+        log_image_.push_back(
             std::log(static_cast<float>(frame.sharp.at<std::uint8_t>(y, x)) + 3.0F));
         const auto i = static_cast<std::size_t>(y) * kPlaneSize.width + static_cast<std::size_t>(x);
-        mean_counts[i] = static_cast<float>(counts.off(i) + counts.on(i));
+        mean_counts_[i] = static_cast<float>(counts.off(i) + counts.on(i));
       }
     }
-    EventChanges changes;
     LaterQuarters quarters(kPlaneSize);
     quarters.count(lists, frame.exposure);
-    changes.measure(lists, frame.exposure, counts.data(), quarters,
-                    {settings.sensor.thresholds, {4 * kNanosecondsPerMillisecond, 0.85}});
-    fitted_ = MotionFit(kPlaneSize)
-                  .fit(log_image.data(), changes, mean_counts.data(),
-                       static_cast<float>(settings.sensor.thresholds.on));
+    changes_.measure(lists, frame.exposure, counts.data(), quarters,
+                     {settings.sensor.thresholds, {4 * kNanosecondsPerMillisecond, 0.85}});
+    contrast_ = static_cast<float>(settings.sensor.thresholds.on);
+    fitted_ = fit();
     exposure_ = frame.exposure;
+  }
+
+  /// The same once more, of what was changed since.
+  FittedMotion fit() const {
+    return MotionFit(kPlaneSize).fit(log_image_.data(), changes_, mean_counts_.data(), contrast_);
+  }
+
+  void expectTheSlowFit() const {
+    const FittedMotion found = fit();
+    const FittedMotion expected =
+        testing::SlowMotionFit(kPlaneSize, log_image_, changes_, mean_counts_)
+            .fit(static_cast<double>(contrast_));
+    constexpr float kRounding_px = 5e-4F;
+    for (std::size_t part = 0; part < ImageMotion::kParts; ++part) {
+      EXPECT_NEAR(found.motion.velocity[part], expected.motion.velocity[part], kRounding_px)
+          << part;
+      EXPECT_NEAR(found.motion.curvature[part], expected.motion.curvature[part], kRounding_px)
+          << part;
+    }
+    EXPECT_NEAR(found.event_share, expected.event_share, 1e-5F);
+    EXPECT_NEAR(found.deviation_px, expected.deviation_px, kRounding_px);
+    EXPECT_NEAR(found.path_px, expected.path_px, kRounding_px);
+    EXPECT_NEAR(found.reach_px, expected.reach_px, kRounding_px);
+    EXPECT_EQ(found.found, expected.found);
   }
 
   /// Takes out one of so many events, evenly over each pixel's; 0: none.
   std::size_t lost_one_of_ = 0;
   FittedMotion fitted_;
+  std::vector<float> log_image_;
+  std::vector<float> mean_counts_;
+  EventChanges changes_;
+  float contrast_ = 0.0F;
   ExposureInterval exposure_;
 
  private:
@@ -122,6 +149,37 @@ TEST_F(MotionFitTest, FindsTheSameMotionWhereEventsAreLost) {
   EXPECT_NEAR(fitted_.event_share, 0.75F, 0.08F);
   EXPECT_NEAR(fitted_.path_px, path_px, 0.05F * path_px);
   EXPECT_LT(errorOf(fitted_.motion, settings, exposure_), 0.5);
+}
+
+TEST_F(MotionFitTest, IsTheOneOfASlowReference) {
+  fit(testing::movingPlane(MotionKind::kSpin, 1.0));
+  expectTheSlowFit();
+  contrast_ = 0.05F;  // taken for 0.1
+  expectTheSlowFit();
+  fit(testing::movingPlane(MotionKind::kShake, 3.0));  // much leaves the image
+  expectTheSlowFit();
+  lost_one_of_ = 5;
+  fit(testing::movingPlane(MotionKind::kShake, 0.3));
+  ASSERT_LT(fitted_.event_share, 0.9F);
+  expectTheSlowFit();
+}
+
+TEST_F(MotionFitTest, NeedsSixtyPixelsWithEvents) {
+  fit(testing::movingPlane(MotionKind::kSpin, 1.0));
+  const std::vector<float> all = mean_counts_;
+  for (const int count : {59, 60}) {
+    int left = count;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::size_t x = i % kPlaneSize.width;
+      const bool is_inside =
+          x > 0 && x + 1 < std::size_t{kPlaneSize.width} && i >= std::size_t{kPlaneSize.width};
+      const bool is_kept = is_inside && all[i] >= 2.0F && left > 0;
+      left -= is_kept ? 1 : 0;
+      mean_counts_[i] = is_kept ? 1.5F : 1.49F;
+    }
+    EXPECT_EQ(fit().found, count == 60) << count;
+    expectTheSlowFit();
+  }
 }
 
 TEST_F(MotionFitTest, FindsNothingWhereNothingMoves) {

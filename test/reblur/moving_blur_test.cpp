@@ -55,6 +55,70 @@ TEST(MovingBlurTest, WithoutMotionTheImageIsTheScene) {
   }
 }
 
+/// The header's sum, pixel by pixel in double precision.
+TEST(MovingBlurTest, IsTheMeanOfTheSharpenedSceneAlongThePath) {
+  constexpr std::size_t kInstants = 6;
+  const ImageMotion motion = turning();
+  MovingBlur blur = blurOf(motion, kInstants);
+  const SceneLayout& layout = blur.layout();
+  const std::vector<float> scene = noise(layout.sceneFloats(), 6);
+  std::vector<float> image(layout.imageFloats());
+  blur.apply(scene.data(), image.data());
+
+  const auto width = static_cast<int>(layout.sceneStride());
+  const auto margin = static_cast<int>(layout.margin());
+  /// Of 8 x 4 pixels.
+  const auto way = [&](int x, int y, std::size_t k) {
+    const float tau = static_cast<float>(2 * k + 1) / static_cast<float>(kInstants) - 1.0F;
+    return motion.displacement(static_cast<float>(x / 8 * 8) + 3.5F,
+                               static_cast<float>(y / 4 * 4) + 1.5F, tau);
+  };
+  double lost_x = 0.0;
+  double lost_y = 0.0;
+  int taps = 0;
+  for (int y = 0; y < static_cast<int>(layout.rows()); y += 4) {
+    for (int x = 0; x < static_cast<int>(layout.stride()); x += 8) {
+      for (std::size_t k = 0; k < kInstants; ++k, ++taps) {
+        const Displacement u = way(x, y, k);
+        const double fx = static_cast<double>(u.x - std::floor(u.x));
+        const double fy = static_cast<double>(u.y - std::floor(u.y));
+        lost_x += fx * (1.0 - fx) / 2.0;
+        lost_y += fy * (1.0 - fy) / 2.0;
+      }
+    }
+  }
+  lost_x /= taps;
+  lost_y /= taps;
+  const auto sharp = [&](int x, int y) {
+    const auto at = [&](int u, int v) {
+      return static_cast<double>(scene[static_cast<std::size_t>(v * width + u)]);
+    };
+    return at(x, y) - lost_x * (at(x - 1, y) - 2.0 * at(x, y) + at(x + 1, y)) -
+           lost_y * (at(x, y - 1) - 2.0 * at(x, y) + at(x, y + 1));
+  };
+  for (int y = 0; y < static_cast<int>(layout.rows()); ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < kInstants; ++k) {
+        const Displacement u = way(x, y, k);
+        const double to_x = margin + x + static_cast<double>(u.x);
+        const double to_y = margin + y + static_cast<double>(u.y);
+        const int left = static_cast<int>(to_x);
+        const int top = static_cast<int>(to_y);
+        const double fx = to_x - left;
+        const double fy = to_y - top;
+        sum += (1.0 - fy) * ((1.0 - fx) * sharp(left, top) + fx * sharp(left + 1, top)) +
+               fy * ((1.0 - fx) * sharp(left, top + 1) + fx * sharp(left + 1, top + 1));
+      }
+      ASSERT_NEAR(
+          static_cast<double>(
+              image[static_cast<std::size_t>(y) * layout.stride() + static_cast<std::size_t>(x)]),
+          sum / static_cast<double>(kInstants), 1e-3)
+          << x << ", " << y;
+    }
+  }
+}
+
 TEST(MovingBlurTest, TheTransposedOperatorIsTheTransposedOne) {
   MovingBlur blur = blurOf(turning(), 6);
   const SceneLayout& layout = blur.layout();
@@ -70,6 +134,31 @@ TEST(MovingBlurTest, TheTransposedOperatorIsTheTransposedOne) {
   blur.applyTransposed(image.data(), spread.data());
   const double expected = dot(blurred, image);
   EXPECT_NEAR(dot(scene, spread), expected, 1e-5 * expected);
+}
+
+/// Column by column: what each pixel of some spreads is what it gathers.
+TEST(MovingBlurTest, EachPixelSpreadsWhatItGathers) {
+  MovingBlur blur = blurOf(turning(), 3);
+  const SceneLayout& layout = blur.layout();
+  for (const std::size_t pixel :
+       {std::size_t{0}, std::size_t{15}, std::size_t{52}, 17 * layout.stride() + 24,
+        39 * layout.stride(), 39 * layout.stride() + 52}) {
+    std::vector<float> image(layout.imageFloats());
+    image[pixel] = 1.0F;
+    std::vector<float> spread(layout.sceneFloats());
+    blur.applyTransposed(image.data(), spread.data());
+    std::vector<float> scene(layout.sceneFloats());
+    double sum = 0.0;
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+      sum += static_cast<double>(spread[i]);
+      if (spread[i] == 0.0F) continue;
+      scene[i] = 1.0F;
+      blur.apply(scene.data(), image.data());
+      scene[i] = 0.0F;
+      ASSERT_NEAR(image[pixel], spread[i], 1e-6F) << pixel << ", " << i;
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-5) << pixel;
+  }
 }
 
 TEST(MovingBlurTest, TheNormalOperatorIsAWeightsAndATransposed) {

@@ -71,9 +71,13 @@ class TrustMapTest : public ::testing::Test {
  protected:
   static constexpr double kVelocity_px = 4.4;
 
-  TrustMapTest() : motion_(kSize) {
-    motion_.velocity = {static_cast<float>(kVelocity_px), 0.0F, 0.0F, 0.0F, 0.0F, 0.0F};
-    blur_.set(motion_, SceneLayout(kSize, 5.0F), 5);
+  TrustMapTest() : motion_(kSize) { setMotion(0.0F); }
+
+  /// \param turn by so much, and zoomed
+  void setMotion(float turn) {
+    motion_.velocity = {static_cast<float>(kVelocity_px), 0.0F, turn, turn, 0.0F, 0.0F};
+    motion_.curvature = {0.0F, 0.0F, turn, 0.0F, 0.0F, 0.0F};
+    blur_.set(motion_, SceneLayout(kSize, 5.0F + 2.0F * turn), 5);
   }
 
   static double level(double x, double y) {
@@ -126,7 +130,8 @@ class TrustMapTest : public ::testing::Test {
           light += level(x + kVelocity_px * ((2.0 * step + 1.0) / kSteps - 1.0), y) / kSteps;
         }
         const bool is_still = still && isInSquare(x, y);
-        blurry.push_back(static_cast<float>((is_still ? level(x, y) : light) + noise(random)));
+        blurry.push_back(
+            static_cast<float>((is_still ? level(x, y) : light) + noisier_ * noise(random)));
         latent.push_back(static_cast<float>(level(x, y) - 3.0 * std::sin(0.9 * x + 0.5 * y)));
         mean_counts.push_back(1.0F);
       }
@@ -140,6 +145,7 @@ class TrustMapTest : public ::testing::Test {
 
   float trustAt(int x, int y) const { return trust_.trust()[indexOf(x, y, kSize.width)]; }
 
+  double noisier_ = 1.0;  ///< than the noise that is told
   float event_share_ = 1.0F;
   float visible_ = kContrast;  ///< changes above it are compared
   ImageMotion motion_;
@@ -223,9 +229,11 @@ class Reference {
           const double said = meanOf(x, y, [&](int u, int v) {
             return static_cast<double>(changes.at(k)[indexOf(u, v, kSize.width)]) / event_share_;
           });
-          const auto u =
-              motion.displacement(2.0F * static_cast<float>(x) + 0.5F,
-                                  2.0F * static_cast<float>(y) + 0.5F, EventChanges::kTau[k]);
+          // One displacement serves blocks of these pixels.
+          const auto block = static_cast<float>(x / 8 * 8) + 3.5F;
+          const auto rows = static_cast<float>(y / 4 * 4) + 1.5F;
+          const Displacement u =
+              motion.displacement(2.0F * block + 0.5F, 2.0F * rows + 0.5F, EventChanges::kTau[k]);
           const double to_x = x + 0.5 * static_cast<double>(u.x);
           const double to_y = y + 0.5 * static_cast<double>(u.y);
           const int left = static_cast<int>(std::floor(to_x));
@@ -284,11 +292,17 @@ TEST_F(TrustMapTest, IsTheOneOfASlowReference) {
     bool still;
     float event_share;
     float visible;
+    float turn;
+    double noisier;
   };
-  for (const Case& one : {Case{false, 1.0F, kContrast},
-                          {true, 1.0F, kContrast},
-                          {false, 0.7F, kContrast},
-                          {true, 1.0F, 3.0F * kContrast}}) {
+  for (const Case& one : {Case{false, 1.0F, kContrast, 0.0F, 1.0},
+                          {true, 1.0F, kContrast, 0.0F, 1.0},
+                          {false, 0.7F, kContrast, 0.0F, 1.0},
+                          {true, 1.0F, kContrast, 0.6F, 1.6},
+                          {false, 1.0F, kContrast, 0.0F, 1.4},
+                          {true, 1.0F, 3.0F * kContrast, 0.0F, 1.0}}) {
+    setMotion(one.turn);
+    noisier_ = one.noisier;
     event_share_ = one.event_share;
     visible_ = one.visible;
     measure(one.still);
