@@ -191,6 +191,7 @@ TEST(ContrastFromBias, RefusesConstantsThatAreNotPositive) {
 TEST(ContrastWarnings, TellWhatIsUnusual) {
   EXPECT_THAT(contrastWarnings({0.26, 0.24}), IsEmpty());
   EXPECT_THAT(contrastWarnings({0.6, 0.3}), IsEmpty());
+  EXPECT_THAT(contrastWarnings({0.05, 0.1}), IsEmpty());
   EXPECT_THAT(contrastWarnings({0.049, 0.06}), ElementsAre(HasSubstr("ON contrast threshold is")));
   EXPECT_THAT(contrastWarnings({0.5, 0.61}), ElementsAre(HasSubstr("OFF contrast threshold is")));
   EXPECT_THAT(contrastWarnings({0.382070, 0.106891}), ElementsAre(HasSubstr("ratio of ON to OFF")));

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "calibration/slow_calibration.hpp"
 #include "fast_edi/integral/double_integral.hpp"
 
 namespace fast_edi {
@@ -28,6 +29,8 @@ class RampScene {
   struct Thresholds {
     double mean = 1.0;
     double spread = 0.0;
+    bool varied =
+        false;  ///< grey levels from nearly black to saturated rather than some middle one
   };
 
   explicit RampScene(std::int64_t delay_ns) : RampScene(delay_ns, Thresholds()) {}
@@ -71,7 +74,10 @@ class RampScene {
         for (int i = 0; i < kSamples; ++i) {
           sum += std::exp(logLevel(x, y, window.start_ns + (2 * i + 1) * kExposure_ns / 400));
         }
-        pixels.push_back(static_cast<std::uint8_t>(std::lround(kGrey * sum / kSamples)));
+        const double grey =
+            thresholds_.varied ? 0.02 * kGrey * (1 + (x * 11 + y * 17) % 67) : kGrey;
+        pixels.push_back(
+            static_cast<std::uint8_t>(std::lround(std::min(255.0, grey * sum / kSamples))));
       }
     }
     return pixels;
@@ -111,8 +117,10 @@ class RampScene {
 };
 
 /// Closes frames as the pipeline does, with what the calibration says.
+/// \param seen seen(calibration, frame): after each frame
+template <typename Seen>
 Calibration calibrated(const RampScene& scene, const Calibration& given,
-                       OnlineCalibration::Settings settings, int frames = 10) {
+                       OnlineCalibration::Settings settings, int frames, Seen seen) {
   OnlineCalibration calibration(kSize, given, settings);
   std::vector<float> gain(kSize.pixelCount());
   for (int i = 0; i < frames; ++i) {
@@ -126,10 +134,44 @@ Calibration calibrated(const RampScene& scene, const Calibration& given,
     const std::vector<std::uint8_t> pixels = scene.frame(i);
     const ImageView image{pixels.data(), kSize, static_cast<std::size_t>(kSize.width),
                           PixelFormat::kMono8};
-    calibration.addFrame({window, reference_ns, image, gain.data()}, CameraResponse::linear(),
-                         scene.lists());
+    const OnlineCalibration::Frame frame{window, reference_ns, image, gain.data()};
+    calibration.addFrame(frame, CameraResponse::linear(), scene.lists());
+    seen(calibration, frame);
   }
   return calibration.inForce();
+}
+Calibration calibrated(const RampScene& scene, const Calibration& given,
+                       OnlineCalibration::Settings settings, int frames = 10) {
+  return calibrated(scene, given, settings, frames,
+                    [](const OnlineCalibration&, const OnlineCalibration::Frame&) {});
+}
+
+TEST(OnlineCalibration, LearnsWhatASlowReferenceLearns) {
+  struct Case {
+    std::int64_t delay_ns;
+    RampScene::Thresholds thresholds;
+    Calibration given;
+    OnlineCalibration::Settings settings;
+  };
+  for (const Case& one :
+       {Case{0, {1.0, 0.3, true}, {{0.8 * kTrue.on, 1.2 * kTrue.off}}, {true, false}},
+        {0, {0.92, 0.05, true}, {kTrue}, {true, true}},
+        {0, {0.89, 0.25, true}, {kTrue}, {true, true}},
+        {2 * kMs, {1.0, 0.1, true}, {{0.8 * kTrue.on, 0.85 * kTrue.off}, kMs}, {true, true}},
+        {-2 * kMs, {1.0, 0.2, false}, {kTrue, -kMs}, {false, true}},
+        {0, {1.0, 0.0, true}, {{2.0 * kTrue.on, 0.6 * kTrue.off}, -kMs}, {true, false}}}) {
+    testing::SlowCalibration slow(kSize, one.given, one.settings);
+    const RampScene scene(one.delay_ns, one.thresholds);
+    calibrated(scene, one.given, one.settings, 10,
+               [&](const OnlineCalibration& found, const OnlineCalibration::Frame& frame) {
+                 slow.addFrame(frame, scene.lists());
+                 EXPECT_NEAR(found.inForce().thresholds.on, slow.inForce().thresholds.on, 1e-5);
+                 EXPECT_NEAR(found.inForce().thresholds.off, slow.inForce().thresholds.off, 1e-5);
+                 EXPECT_NEAR(static_cast<double>(found.inForce().event_delay_ns),
+                             static_cast<double>(slow.inForce().event_delay_ns), 500.0);
+                 EXPECT_EQ(found.fits(), slow.fits());
+               });
+  }
 }
 
 TEST(OnlineCalibration, FindsThresholdsThatAreTwentyPercentOff) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -141,6 +142,55 @@ TEST(GainFilter, RaisesGainsOfFewEventsMost) {
     raised_before = raised;
     const float n = static_cast<float>(on) / 5.0F;
     EXPECT_NEAR(raised, 1.0F + 0.4F / (1.0F + n * n), 1e-4F);
+  }
+}
+
+TEST(GainFilter, RestoredGainsStayWithinTheRangeOfExponentials) {
+  GainFilter::Settings settings = nothing();
+  settings.restore = 0.5F;
+  GainFilter filter(kSize, settings);
+  std::vector<float> gain = unitGains();
+  gain[0] = std::exp(60.0F);
+  gain[1] = std::exp(-60.0F);
+  gain[2] = std::exp(45.0F);
+  Fixture{}.apply(filter, gain);
+  EXPECT_NEAR(std::log(gain[0]), 69.0F, 1e-4F);
+  EXPECT_NEAR(std::log(gain[1]), -69.0F, 1e-4F);
+  EXPECT_NEAR(std::log(gain[2]), 67.5F, 1e-4F);
+}
+
+/// The noise that is told to non-local means grows with the events, up to a count.
+TEST(GainFilter, SmoothsByTheNoiseOfTheEvents) {
+  GainFilter::Settings settings = nothing();
+  settings.smooth = true;
+  settings.noise = 0.3F;
+  settings.spatial_sigma_px = 1.2F;
+  GainFilter filter(kSize, settings);
+  std::mt19937 random(9);
+  std::normal_distribution<float> noise(0.0F, 0.12F);
+  std::vector<float> gain;
+  std::vector<float> expected;
+  for (std::size_t i = 0; i < kSize.pixelCount(); ++i) {
+    expected.push_back(noise(random));
+    gain.push_back(std::exp(expected.back()));
+  }
+  Fixture f;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      f.counts[2 * indexOf(x, y)] = static_cast<std::uint16_t>(x + random() % 3);
+      f.counts[2 * indexOf(x, y) + 1] = static_cast<std::uint16_t>(random() % 3);
+    }
+  }
+  const ContrastThresholds thresholds{0.3, 0.2};
+  filter.apply(f.level.data(), {f.counts.data(), thresholds}, gain.data());
+  std::vector<float> variance;
+  for (std::size_t i = 0; i < kSize.pixelCount(); ++i) {
+    const float least = std::pow(0.3F * 0.25F, 2.0F);
+    variance.push_back(least * (1.0F + std::min(filter.meanCounts()[i], 30.0F) / 15.0F));
+  }
+  NonLocalMeans(kSize, {2, 1.2F, 1}).apply(expected.data(), variance.data(), expected.data());
+  for (std::size_t i = 0; i < kSize.pixelCount(); ++i) {
+    ASSERT_NEAR(std::log(gain[i]), expected[i], 1e-5F) << i;
   }
 }
 

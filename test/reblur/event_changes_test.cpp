@@ -83,5 +83,33 @@ TEST(EventChangesTest, OfManyEventsBegunStepsAreLeftOut) {
   }
 }
 
+/// With as many events as make begun steps matter little, to the event.
+TEST(EventChangesTest, BegunStepsAreLeftOutFromSixteenEventsAPixelOn) {
+  const LatentGains::Model model{{0.3, 0.25}, {4 * kMs, 0.85}};
+  const std::size_t pixels = kSize.pixelCount();
+  for (const std::size_t missing : {0U, 1U}) {
+    std::vector<Event> list;
+    for (std::size_t i = missing; i < 16 * pixels; ++i) {
+      const auto from_start =
+          static_cast<std::int64_t>(i) * kWindow.length() / static_cast<std::int64_t>(16 * pixels);
+      list.push_back({static_cast<std::uint16_t>(i % kSize.width),
+                      static_cast<std::uint16_t>(i / kSize.width % kSize.height),
+                      kWindow.start_ns + from_start, true});
+    }
+    PixelEventLists lists(kSize, {});
+    lists.keepIntervals(true);
+    lists.append(testing::wireView(testing::toWire(list)));
+    EventCounts counts(kSize);
+    counts.count(lists, kWindow);
+    LaterQuarters quarters(kSize);
+    quarters.count(lists, kWindow);
+    EventChanges changes;
+    changes.measure(lists, kWindow, counts.data(), quarters, model);
+    // Eight ON events until the end, and what has begun in the middle.
+    const bool whole_steps = std::abs(changes.at(2)[7] - 8.0F * 0.3F) < 1e-4F;
+    EXPECT_EQ(whole_steps, missing == 0);
+  }
+}
+
 }  // namespace
 }  // namespace fast_edi
