@@ -132,7 +132,7 @@ class TrustMapTest : public ::testing::Test {
         const bool is_still = still && isInSquare(x, y);
         blurry.push_back(
             static_cast<float>((is_still ? level(x, y) : light) + noisier_ * noise(random)));
-        latent.push_back(static_cast<float>(level(x, y) - 3.0 * std::sin(0.9 * x + 0.5 * y)));
+        latent.push_back(static_cast<float>(level(x, y) - missing_ * std::sin(0.9 * x + 0.5 * y)));
         mean_counts.push_back(1.0F);
       }
     }
@@ -145,6 +145,7 @@ class TrustMapTest : public ::testing::Test {
 
   float trustAt(int x, int y) const { return trust_.trust()[indexOf(x, y, kSize.width)]; }
 
+  double missing_ = 3.0;  ///< amplitude of a wave that the latent image lacks
   double noisier_ = 1.0;  ///< than the noise that is told
   float event_share_ = 1.0F;
   float visible_ = kContrast;  ///< changes above it are compared
@@ -293,15 +294,18 @@ TEST_F(TrustMapTest, IsTheOneOfASlowReference) {
     float event_share;
     float visible;
     float turn;
+    double missing;
     double noisier;
   };
-  for (const Case& one : {Case{false, 1.0F, kContrast, 0.0F, 1.0},
-                          {true, 1.0F, kContrast, 0.0F, 1.0},
-                          {false, 0.7F, kContrast, 0.0F, 1.0},
-                          {true, 1.0F, kContrast, 0.6F, 1.6},
-                          {false, 1.0F, kContrast, 0.0F, 1.4},
-                          {true, 1.0F, 3.0F * kContrast, 0.0F, 1.0}}) {
+  for (const Case& one : {Case{false, 1.0F, kContrast, 0.0F, 3.0, 1.0},
+                          {true, 1.0F, kContrast, 0.0F, 3.0, 1.0},
+                          {false, 0.7F, kContrast, 0.0F, 3.0, 1.0},
+                          {true, 1.0F, kContrast, 0.6F, 3.0, 1.6},
+                          {false, 1.0F, 3.0F * kContrast, 0.3F, 0.0, 2.4},
+                          {true, 1.0F, 3.0F * kContrast, 0.0F, 3.0, 1.0}}) {
+    trust_ = TrustMap();
     setMotion(one.turn);
+    missing_ = one.missing;
     noisier_ = one.noisier;
     event_share_ = one.event_share;
     visible_ = one.visible;
