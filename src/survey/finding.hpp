@@ -13,6 +13,13 @@
 
 namespace fast_edi {
 
+/// What made a recording, in whose words advice is given.
+enum class RecordingOrigin {
+  kRosDriver,  ///< a driver of ROS 1: a rosbag
+  kDv,         ///< iniVation's DV: AEDAT4
+  kOther,
+};
+
 /// One thing that breaks or weakens deblurring.
 struct Finding {
   std::string name;      ///< a fixed word for each kind, e.g. "exposure-missing"

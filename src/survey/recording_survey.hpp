@@ -15,6 +15,7 @@
 #include "survey/clock_relation.hpp"
 #include "survey/event_statistics.hpp"
 #include "survey/event_timeline.hpp"
+#include "survey/finding.hpp"
 #include "survey/frame_log.hpp"
 
 namespace fast_edi {
@@ -27,6 +28,7 @@ struct AssumedParameters {
   std::int64_t time_offset_ns = 0;
   std::int64_t exposure_time_ns = 0;     ///< 0 = not known
   bool exposure_from_parameter = false;  ///< exposure messages are not used
+  RecordingOrigin origin = RecordingOrigin::kRosDriver;
 };
 
 class RecordingSurvey {

@@ -15,6 +15,7 @@
 #include "fast_edi/bags/message_source.hpp"
 #include "fast_edi/bags/open_messages.hpp"
 #include "fast_edi/bags/topic_names.hpp"
+#include "fast_edi/recording/open_recording.hpp"
 #include "validation/recording_validator.hpp"
 #include "validation/report_text.hpp"
 #include "validation_pass.hpp"
@@ -66,14 +67,30 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   return true;
 }
 
-void addFileFindings(const tools::ReadResult& pass, std::vector<fast_edi::Finding>& findings) {
+/// By the format of the recording.
+fast_edi::RecordingOrigin originOf(const std::string& recording) {
+  switch (fast_edi::formatOf(recording)) {
+    case fast_edi::RecordingFormat::kRosbag:
+      return fast_edi::RecordingOrigin::kRosDriver;
+    case fast_edi::RecordingFormat::kAedat4:
+      return fast_edi::RecordingOrigin::kDv;
+    default:
+      return fast_edi::RecordingOrigin::kOther;
+  }
+}
+
+void addFileFindings(const tools::ReadResult& pass, fast_edi::RecordingOrigin origin,
+                     std::vector<fast_edi::Finding>& findings) {
   if (!pass.damage.empty()) {
-    findings.push_back(
-        {"file-damaged", "a complete recording",
-         fast_edi::textOf(
-             "%zu places cannot be read, the first at byte %llu: %s", pass.damage.size(),
-             static_cast<unsigned long long>(pass.damage[0].offset), pass.damage[0].what.c_str()),
-         "deblur_bag reads what is left; rosbag reindex mends a bag that was cut short"});
+    findings.push_back({"file-damaged", "a complete recording",
+                        fast_edi::textOf("%zu places cannot be read, the first at byte %llu: %s",
+                                         pass.damage.size(),
+                                         static_cast<unsigned long long>(pass.damage[0].offset),
+                                         pass.damage[0].what.c_str()),
+                        std::string("deblur_bag reads what is left") +
+                            (origin == fast_edi::RecordingOrigin::kRosDriver
+                                 ? "; rosbag reindex mends a bag that was cut short"
+                                 : "")});
   }
   if (pass.malformed > 0) {
     findings.push_back(
@@ -116,8 +133,9 @@ int run(const Arguments& arguments) {
     tools::requireFree(curvePath(arguments), arguments.overwrite);
   }
   std::unique_ptr<fast_edi::MessageSource> recording = fast_edi::openMessages(arguments.recordings);
-  const tools::ValidationStart start =
+  tools::ValidationStart start =
       tools::validationStart(*recording, arguments.config, arguments.overrides);
+  start.parameters.origin = originOf(arguments.recordings.front());
   fast_edi::TopicNames topics = arguments.topics;
   topics.output = "/validate_bag";  // writes none: topics of deblurred frames may be there already
   {
@@ -139,7 +157,7 @@ int run(const Arguments& arguments) {
       tools::readThrough(arguments.recordings, topics, "looking through", validator);
   fast_edi::ValidationReport report =
       tools::finishValidation(arguments.recordings, topics, validator);
-  addFileFindings(pass, report.findings);
+  addFileFindings(pass, start.parameters.origin, report.findings);
   fast_edi::printReport(std::cout, validator.survey(), report);
   if (!arguments.output.empty()) {
     drawCurve(curvePath(arguments), report.timing);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "validation/advice.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -131,8 +133,9 @@ std::vector<Finding> checkCoverage(const RecordingSurvey& survey) {
         {"no-events-between-exposures", "events all the time",
          textOf("events for %.2f ms, then none for %.2f ms, frame by frame",
                 between->length_ns / kMs, between->pause_ns / kMs),
-         "driver: keep events running between the exposures; frames can be deblurred all the same, "
-         "but thresholds cannot be learned: refine_contrast: false, refine_delay: false"});
+         adviceFor(Remedy::kEventsBetween, survey.parameters().origin) +
+             "; frames can be deblurred all the same, "
+             "but thresholds cannot be learned: refine_contrast: false, refine_delay: false"});
   }
   const std::vector<ExposureInterval> holes = eventHoles(survey);
   if (!holes.empty()) {
@@ -144,9 +147,8 @@ std::vector<Finding> checkCoverage(const RecordingSurvey& survey) {
                         textOf("%zu, the longest %.1f ms, at %.3f s of the recording", holes.size(),
                                static_cast<double>(longest.length()) / kMs,
                                static_cast<double>(longest.start_ns - epoch->first_ns) * 1e-9),
-                        "record with a larger buffer (rosbag record --buffsize 0) and a lower "
-                        "event rate (biases); "
-                        "frames there are deblurred wrongly"});
+                        adviceFor(Remedy::kFewerLosses, survey.parameters().origin) +
+                            "; frames there are deblurred wrongly"});
   }
   std::size_t known = 0;
   std::size_t uncovered = 0;

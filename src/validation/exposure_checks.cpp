@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "validation/advice.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -21,7 +23,7 @@ std::vector<Finding> checkExposures(const RecordingSurvey& survey) {
     if (survey.parameters().exposure_time_ns == 0) {
       findings.push_back({"exposure-missing", "an exposure message for each frame, or a parameter",
                           "neither",
-                          "exposure_time_us as proposed below, or as the driver has it"});
+                          adviceFor(Remedy::kGivenExposure, survey.parameters().origin)});
     }
     return findings;
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "validation/advice.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -72,7 +74,8 @@ bool isStep(const TimeHistogram& times, std::size_t bin) {
   return level_before && level_behind;
 }
 
-void checkPolarity(const EventStatistics& statistics, std::vector<Finding>& findings) {
+void checkPolarity(const EventStatistics& statistics, RecordingOrigin origin,
+                   std::vector<Finding>& findings) {
   const auto on = static_cast<double>(statistics.on());
   const auto off = static_cast<double>(statistics.off());
   if (statistics.on() + statistics.off() < kEnoughForBalance) {
@@ -83,24 +86,26 @@ void checkPolarity(const EventStatistics& statistics, std::vector<Finding>& find
   if (polarityIsMissing(statistics)) {
     findings.push_back(
         {"polarity-missing", "ON and OFF events in like numbers", found,
-         textOf("driver: polarity_suppress: false, polarity_flatten: false; else check %s",
-                on < off ? "OnBn, which may be too high"
-                         : "OffBn, which may be too low (the "
-                           "stock OFFBn_fine is 0)")});
+         adviceFor(Remedy::kBothPolarities, origin) +
+             (on < off ? " OnBn, which may be too high" : " OffBn, which may be too low") +
+             (on >= off && origin == RecordingOrigin::kRosDriver ? " (the stock OFFBn_fine is 0)"
+                                                                 : "")});
   } else if (std::max(on, off) > kImbalance * std::min(on, off)) {
     findings.push_back({"polarity-imbalance",
                         textOf("numbers of ON and OFF events within a factor of %.0f", kImbalance),
                         found,
-                        textOf("driver: check %s; fast_edi: contrast_threshold_%s about %.1f times "
-                               "contrast_threshold_%s",
-                               on > off ? "OffBn (too low) or OnBn (too low)"
-                                        : "OnBn (too high) or OffBn (too high)",
-                               on > off ? "off" : "on", std::max(on, off) / std::min(on, off),
-                               on > off ? "on" : "off")});
+                        adviceFor(Remedy::kBiases, origin) +
+                            textOf(" %s; fast_edi: contrast_threshold_%s about %.1f times "
+                                   "contrast_threshold_%s",
+                                   on > off ? "OffBn (too low) or OnBn (too low)"
+                                            : "OnBn (too high) or OffBn (too high)",
+                                   on > off ? "off" : "on", std::max(on, off) / std::min(on, off),
+                                   on > off ? "on" : "off")});
   }
 }
 
-void checkHotPixels(const EventStatistics& statistics, std::vector<Finding>& findings) {
+void checkHotPixels(const EventStatistics& statistics, RecordingOrigin origin,
+                    std::vector<Finding>& findings) {
   const std::vector<HotPixel> hot = statistics.hotPixels();
   if (hot.empty()) {
     return;
@@ -113,8 +118,8 @@ void checkHotPixels(const EventStatistics& statistics, std::vector<Finding>& fin
                       "no pixel that fires all the time, far more than those around it",
                       textOf("%zu, as (column, row) and rate: %s%s", hot.size(), list.c_str(),
                              hot.size() > kListedPixels ? ", ..." : ""),
-                      "driver: pixel_auto_train, or pixel_0_column/_row to pixel_7_...; fast_edi: "
-                      "filter_despeckle (on by default)"});
+                      adviceFor(Remedy::kHotPixelsMasked, origin) +
+                          "; fast_edi: filter_despeckle (on by default)"});
 }
 
 }  // namespace
@@ -164,7 +169,8 @@ bool polarityIsMissing(const EventStatistics& statistics) {
              kMissingPolarity * static_cast<double>(all);
 }
 
-std::vector<Finding> checkFilters(const EventStatistics& statistics, double stretch_ns) {
+std::vector<Finding> checkFilters(const EventStatistics& statistics, double stretch_ns,
+                                  RecordingOrigin origin) {
   std::vector<Finding> findings;
   if (const auto edge_ns = backgroundActivityEdgeNs(
           statistics.neighbourTimes(), std::min(kMostActivityTime_ns, kCutOff * stretch_ns))) {
@@ -172,8 +178,8 @@ std::vector<Finding> checkFilters(const EventStatistics& statistics, double stre
         {"background-activity-filter", "isolated events, too: noise shows that nothing was removed",
          textOf("events whose neighbours' last lies more than %.1f ms back are suddenly few",
                 *edge_ns / kMs),
-         "driver: background_activity_filter_enabled: false; the first events of edges are "
-         "missing"});
+         adviceFor(Remedy::kBackgroundActivityFilterOff, origin) +
+             "; the first events of edges are missing"});
   }
   const auto edge_ns = refractoryEdgeNs(statistics.pixelTimes());
   // A few hot pixels with a beat of their own are no filter.
@@ -181,11 +187,10 @@ std::vector<Finding> checkFilters(const EventStatistics& statistics, double stre
     findings.push_back(
         {"refractory-filter", "events of a pixel within 0.2 ms of each other, too",
          textOf("none within %.2f ms of the pixel's last, many from there on", *edge_ns / kMs),
-         "driver: refractory_period_enabled: false (or the bias RefrBp higher); fast "
-         "edges are missing events"});
+         adviceFor(Remedy::kRefractoryFilterOff, origin) + "; fast edges are missing events"});
   }
-  checkPolarity(statistics, findings);
-  checkHotPixels(statistics, findings);
+  checkPolarity(statistics, origin, findings);
+  checkHotPixels(statistics, origin, findings);
   return findings;
 }
 

@@ -38,6 +38,8 @@ bool polarityIsMissing(const EventStatistics& statistics);
 
 /// \param stretch_ns for how long at a time events come without a pause: times near that are cut
 /// off
-std::vector<Finding> checkFilters(const EventStatistics& statistics, double stretch_ns);
+/// \param origin in whose words advice is given
+std::vector<Finding> checkFilters(const EventStatistics& statistics, double stretch_ns,
+                                  RecordingOrigin origin);
 
 }  // namespace fast_edi

@@ -116,7 +116,8 @@ ValidationReport RecordingValidator::finish(std::function<void(int done, int tot
     append(report.findings,
            checkFilters(*survey_.statistics(),
                         by_events_ ? by_events_->length_ns
-                                   : static_cast<double>(epoch.last_ns - epoch.first_ns)));
+                                   : static_cast<double>(epoch.last_ns - epoch.first_ns),
+                        survey_.parameters().origin));
   }
   append(report.findings, checkCoverage(survey_));
   append(report.findings, checkExposures(survey_));

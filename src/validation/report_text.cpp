@@ -78,7 +78,7 @@ void printReport(std::ostream& out, const RecordingSurvey& survey, const Validat
       << "exposure_time_us: " << proposal.exposure_time_us
       << (proposal.exposure_time_us > 0 ? ""
           : by_topic                    ? "  # the exposure topic has it"
-                                        : "  # not known: cannot be told, see the driver")
+                     : "  # not known: cannot be told, see the camera's settings")
       << "\n";
 }
 

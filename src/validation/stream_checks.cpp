@@ -1,5 +1,6 @@
 #include "validation/stream_checks.hpp"
 #include "fast_edi/base/sensor_size.hpp"
+#include "validation/advice.hpp"
 
 #include <cstdlib>
 #include <map>
@@ -28,8 +29,8 @@ void checkSizes(const RecordingSurvey& survey, std::vector<Finding>& findings) {
   if (frame_sizes.size() > 1) {
     findings.push_back({"frame-size-changes", "one size of all frames",
                         listed(frame_sizes) + " frames",
-                        "driver: keep the region of interest of the frames (aps_roi_...) fixed; "
-                        "frames of another size than the event sensor are passed through"});
+                        adviceFor(Remedy::kFixedFrameRegion, survey.parameters().origin) +
+                            "; frames of another size than the event sensor are passed through"});
   }
   if (survey.eventSizes().size() > 1) {
     findings.push_back({"event-size-changes", "one size in all event arrays",
@@ -43,14 +44,15 @@ void checkSizes(const RecordingSurvey& survey, std::vector<Finding>& findings) {
     findings.push_back({"sizes-differ", "event arrays and frames of the same size",
                         "frames " + sizeText(frame.first, frame.second) + ", event arrays " +
                             sizeText(events.first, events.second),
-                        "driver: whole sensor for frames (aps_roi_...) and events; such frames "
-                        "are passed through"});
+                        adviceFor(Remedy::kWholeSensor, survey.parameters().origin) +
+                            "; such frames are passed through"});
   }
   for (const auto& fault : survey.frames().faults()) {
     findings.push_back({"encoding",
                         "mono8, 8UC1, mono16, or rgb, bgr, rgba, bgra, bayer of 8 or 16 bits",
                         textOf("%llu frames with %s", count(fault.second), fault.first.c_str()),
-                        "driver: frame_mode 0, 1 or 2; such frames are passed through"});
+                        adviceFor(Remedy::kFrameEncoding, survey.parameters().origin) +
+                            "; such frames are passed through"});
   }
   const EventStatistics* statistics = survey.statistics();
   if (statistics != nullptr && statistics->outside() > 0) {
@@ -66,15 +68,13 @@ void checkLosses(const RecordingSurvey& survey, std::vector<Finding>& findings) 
   if (survey.arrayGaps() > 0) {
     findings.push_back({"arrays-dropped", "header.seq of event arrays without gaps",
                         textOf("%llu gaps", count(survey.arrayGaps())),
-                        "record with a larger buffer (rosbag record --buffsize 0), on the "
-                        "driver's machine, without compression; frames of these times are passed "
-                        "through"});
+                        adviceFor(Remedy::kFewerLosses, survey.parameters().origin) +
+                            "; frames of these times are passed through"});
   }
   if (survey.frames().gaps() > 0) {
     findings.push_back({"frames-dropped", "header.seq of frames without gaps",
                         textOf("%llu gaps", count(survey.frames().gaps())),
-                        "record with a larger buffer (rosbag record --buffsize 0), on the "
-                        "driver's machine, without compression"});
+                        adviceFor(Remedy::kFewerLosses, survey.parameters().origin)});
   }
 }
 
@@ -91,8 +91,7 @@ void checkClocks(const RecordingSurvey& survey, std::vector<Finding>& findings) 
                           textOf("%.0f ms of events stamped %.3f s after 1970",
                                  static_cast<double>(epoch.last_ns - epoch.first_ns) / kMs,
                                  static_cast<double>(epoch.first_ns) * 1e-9),
-                          "start recording a second after the driver; or cut it off: rosbag filter "
-                          "IN.bag OUT.bag \"t.secs > ...\""});
+                          adviceFor(Remedy::kLaterStart, survey.parameters().origin)});
       break;
     }
   }

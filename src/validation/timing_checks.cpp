@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fast_edi/calibration/contrast_from_bias.hpp"
+#include "validation/advice.hpp"
 
 namespace fast_edi {
 namespace {
@@ -133,8 +134,10 @@ void judgeThresholds(const RecordingSurvey& survey, const TimingEstimate& estima
   if (warnings.empty()) {
     verdict.proposal.thresholds = found;
     finding.set =
-        textOf("%scontrast_threshold_on: %.2f, contrast_threshold_off: %.2f",
-               ratio > 1.0 ? "driver: skip_enabled: false; if it was: " : "", found.on, found.off);
+        (ratio > 1.0
+             ? adviceFor(Remedy::kSkipFilterOff, survey.parameters().origin) + "; if it was: "
+             : "") +
+        textOf("contrast_threshold_on: %.2f, contrast_threshold_off: %.2f", found.on, found.off);
   } else {
     finding.found += ", or the frames are not linear in light";
     finding.set =
@@ -252,7 +255,7 @@ TimingVerdict judgeTiming(const RecordingSurvey& survey, const TimingEstimate& e
         {"exposure-of-next-frame", "exposure messages that belong to the frame before them",
          "lengths fit when each is taken for the next frame (drivers before 2017 sent the "
          "requested next value)",
-         "update the driver, or hold the exposure fixed (autoexposure_enabled: false)"});
+         adviceFor(Remedy::kHeldExposure, survey.parameters().origin)});
   }
   return verdict;
 }

@@ -1,6 +1,7 @@
 /// The program `validate_bag`, run as a user runs it on simulated recordings.
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 
@@ -44,6 +45,26 @@ TEST_F(ValidateBagTest, HelpTellsTheExitCodes) {
   EXPECT_EQ(runCommand(kTools + "validate_bag --nonsense").exit_code, 1);
   EXPECT_EQ(runCommand(kTools + "validate_bag /nonexistent.bag").exit_code, 1);
   EXPECT_EQ(runCommand(kTools + "validate_bag a.bag b.bag").exit_code, 1);
+}
+
+TEST_F(ValidateBagTest, AdviceFitsWhatMadeTheRecording) {
+  const std::string bag = simulate("--fault suppress-on");
+  const auto advice_for = [&](const std::string& recording) {
+    return runCommand(kTools + "validate_bag " + recording + kThresholds).output;
+  };
+  const std::string of_bag = advice_for(bag);
+  EXPECT_THAT(of_bag, HasSubstr("driver: polarity_suppress: false"));
+  const std::string setting = "polarity_suppress";
+  const std::pair<const char*, const char*> others[] = {
+      {"recording.aedat4", "DV: events of both polarities"},
+      {"recording.h5", "record and convert events of both polarities"}};
+  for (const auto& [name, expected] : others) {
+    SCOPED_TRACE(name);
+    const std::string recording = directory_.file(name);
+    ASSERT_EQ(runCommand(kTools + "convert_recording " + bag + " " + recording).exit_code, 0);
+    EXPECT_THAT(advice_for(recording),
+                AllOf(HasSubstr(expected), Not(HasSubstr("driver:")), Not(HasSubstr(setting))));
+  }
 }
 
 TEST_F(ValidateBagTest, ASoundRecordingPassesAndIsDrawn) {

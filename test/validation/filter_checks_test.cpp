@@ -137,7 +137,7 @@ TEST(FilterChecksTest, HotPixelsWithABeatOfTheirOwnAreNoRefractoryFilter) {
   }
   EXPECT_TRUE(refractoryEdgeNs(statistics.pixelTimes()));
   EXPECT_LE(statistics.pixelsWithShortest(0.9 * kMs, 1.9 * kMs), 10U);
-  EXPECT_THAT(checkFilters(statistics, kLong_ns),
+  EXPECT_THAT(checkFilters(statistics, kLong_ns, RecordingOrigin::kRosDriver),
               Not(Contains(Field(&Finding::name, "refractory-filter"))));
 }
 
@@ -154,10 +154,11 @@ EventStatistics withPolarities(int on, int off) {
 }
 
 TEST(FilterChecksTest, PolaritiesAreWeighed) {
-  EXPECT_THAT(checkFilters(withPolarities(5'000, 4'000), kLong_ns), IsEmpty());
-  EXPECT_THAT(checkFilters(withPolarities(9'000, 3'000), kLong_ns),
+  EXPECT_THAT(checkFilters(withPolarities(5'000, 4'000), kLong_ns, RecordingOrigin::kRosDriver),
+              IsEmpty());
+  EXPECT_THAT(checkFilters(withPolarities(9'000, 3'000), kLong_ns, RecordingOrigin::kRosDriver),
               ElementsAre(Field(&Finding::name, "polarity-imbalance")));
-  EXPECT_THAT(checkFilters(withPolarities(9'000, 10), kLong_ns),
+  EXPECT_THAT(checkFilters(withPolarities(9'000, 10), kLong_ns, RecordingOrigin::kRosDriver),
               ElementsAre(Field(&Finding::name, "polarity-missing")));
   EXPECT_TRUE(polarityIsMissing(withPolarities(10, 9'000)));
   EXPECT_FALSE(polarityIsMissing(withPolarities(3, 0)));
