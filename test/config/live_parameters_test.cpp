@@ -172,6 +172,7 @@ TEST(ScalarText, IsReadBackTheSame) {
   EXPECT_EQ(scalarText(10000.0), "10000");
   EXPECT_TRUE(std::isnan(YAML::Node(scalarText(std::nan(""))).as<double>()));
   EXPECT_EQ(YAML::Node(scalarText(-INFINITY)).as<double>(), -INFINITY);
+  EXPECT_EQ(YAML::Node(scalarText(INFINITY)).as<double>(), INFINITY);
 }
 
 }  // namespace

@@ -138,6 +138,20 @@ TEST(ParametersFromYaml, ThresholdsComeFromBiasesInEverySpelling) {
   EXPECT_NEAR(jaer.deblur.thresholds.off, 0.261683, 1e-5);
 }
 
+TEST(ParametersFromYaml, BiasesOfOneThresholdAreKeptForLater) {
+  const std::string on_alone =
+      "biases: {DiffBn_coarse: 4, DiffBn_fine: 39, OnBn_coarse: 5, OnBn_fine: 255}\n";
+  EXPECT_TRUE(load("contrast_threshold_off: 0.2\n" + on_alone).biases);
+  EXPECT_TRUE(load(kThresholds + on_alone).biases);
+  EXPECT_FALSE(load(kThresholds + "biases: {DiffBn_coarse: 4, OnBn_coarse: 5}\n").biases);
+}
+
+TEST(ParametersFromYaml, AFaultyBiasIsTheOnlyFault) {
+  EXPECT_THAT(linesOf(messageFor("biases: {DiffBn_coarse: 4, DiffBn_fine: 39, OnBn_coarse: 5, "
+                                 "OnBn_fine: many, OffBn_coarse: 4, OffBn_fine: 1}\n")),
+              SizeIs(1));
+}
+
 TEST(ParametersFromYaml, KappasScaleTheThresholds) {
   const double plain = load(kLibcaerBiases).deblur.thresholds.on;
   YAML::Node root = YAML::Load(kLibcaerBiases);
@@ -366,6 +380,23 @@ TEST_F(ParametersFromFile, ReadsNoFurtherThanAConfigurationCanBeLong) {
     FAIL();
   } catch (const ParameterError& error) {
     EXPECT_STREQ(error.what(), "/dev/zero: larger than 1 MB, expected a YAML file of parameters");
+  }
+}
+
+TEST_F(ParametersFromFile, AConfigurationMayBeOneMegabyteLong) {
+  constexpr std::size_t kMegabyte = 1 << 20;
+  const std::string path = directory_.file("long.yaml");
+  for (const std::size_t more : {0U, 1U}) {
+    std::string text = kThresholds + "# ";
+    text.resize(kMegabyte + more, 'x');
+    std::ofstream(path) << text;
+    std::string message = "accepted";
+    try {
+      parametersFromFile(path);
+    } catch (const ParameterError& error) {
+      message = error.what();
+    }
+    EXPECT_THAT(message, HasSubstr(more == 0 ? "accepted" : "larger than 1 MB"));
   }
 }
 

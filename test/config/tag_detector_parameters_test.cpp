@@ -53,5 +53,18 @@ TEST(TagDetectorParametersTest, FaultsAreNamedAllAtOnce) {
   EXPECT_THAT(refusal("[1]"), HasSubstr("expected a map"));
 }
 
+TEST(TagDetectorParametersTest, RangesEndWhereTheySay) {
+  for (const char* good :
+       {"{tag_size_m: 0.001}", "{tag_size_m: 100}", "{decimate: 1}", "{decimate: 16}",
+        "{threads: 1}", "{threads: 64}", "{corrected_bits: 0}", "{corrected_bits: 2}"}) {
+    EXPECT_EQ(refusal(good), "accepted");
+  }
+  for (const char* bad :
+       {"{tag_size_m: 0.00099}", "{tag_size_m: 100.1}", "{decimate: 0.99}", "{decimate: 16.01}",
+        "{threads: 0}", "{threads: 65}", "{corrected_bits: -1}", "{corrected_bits: 3}"}) {
+    EXPECT_THAT(refusal(bad), HasSubstr(", expected a")) << bad;
+  }
+}
+
 }  // namespace
 }  // namespace fast_edi
