@@ -50,37 +50,43 @@ class UnitTests:
         self.names = set(re.findall(r"^\[ RUN      \] (\S+)", output, re.M))
         return fault
 
-    def own_suites(self, path):
-        """The suites of the folder of a source."""
+    def suites_in(self, tests):
+        """The suites of some files of tests."""
         names = set()
-        for test in (self.root / "test" / pathlib.Path(path).parent.name).glob("*_test.cpp"):
+        for test in tests:
             names.update(re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+),", test.read_text(), re.M))
         return {suite for suite in self.suites if names.intersection(suite.split("/"))}
+
+    def batches(self, path, own_only):
+        """All suites in the order in which to run them: those of the source, of its folder, and others, if asked for;
+        the quick ones of each before the slow."""
+        folder = self.root / "test" / pathlib.Path(path).parent.name
+        source = self.suites_in(folder.glob(f"{pathlib.Path(path).stem}*_test.cpp"))
+        own = self.suites_in(folder.glob("*_test.cpp")) - source
+        for suites in (source, own, set() if own_only else set(self.suites) - source - own):
+            for quick in (True, False):
+                batch = {suite for suite in suites if (self.suites[suite] <= QUICK_SUITE_MS) == quick}
+                if batch:
+                    yield batch
 
     def first_failure(self, path, hint="", own_only=False, use_changed=True):
         """Which test failed first, or how else the program ended; empty if all passed.
 
-        The hint, a test that failed before, runs first; then the suites of the source's folder, as the likeliest to
-        notice; then all others, if asked for. The quick ones of each come before the slow.
+        The hint, a test that failed before, runs first, then batches().
         """
         if hint:
             fault, _ = self.run_program(hint, HINT_LIMIT_S, use_changed)
             if fault:
                 return fault
-        own = self.own_suites(path)
-        for suites in (own, set() if own_only else set(self.suites) - own):
-            for quick in (True, False):
-                batch = {suite for suite in suites if (self.suites[suite] <= QUICK_SUITE_MS) == quick}
-                if batch:
-                    limit_s = 10 + 5 * sum(self.suites[suite] for suite in batch) / 1000
-                    test_filter = ":".join(f"{suite}.*" for suite in sorted(batch))
-                    fault, _ = self.run_program(test_filter, limit_s, use_changed)
-                    if fault:
-                        return fault
+        for batch in self.batches(path, own_only):
+            limit_s = 10 + 5 * sum(self.suites[suite] for suite in batch) / 1000
+            fault, _ = self.run_program(":".join(f"{suite}.*" for suite in sorted(batch)), limit_s, use_changed)
+            if fault:
+                return fault
         return ""
 
     def run_program(self, test_filter, limit_s, use_changed=False):
-        """Which test failed, as first_failure(), and what was printed.
+        """Which test failed, as for first_failure(), and what was printed.
 
         The limit is one of processor time; of time as such it is six times as long, since others may use
         the processor, too.

@@ -166,7 +166,14 @@ TEST_F(MotionFitTest, IsTheOneOfASlowReference) {
   expectTheSlowFit();
   fit(testing::movingPlane(MotionKind::kShake, 3.0));  // much leaves the image
   expectTheSlowFit();
-  addNoise(0.1F);  // a smaller share of events would explain a little more, too little
+  fit(testing::movingPlane(MotionKind::kSpin, 0.5));  // a smaller share would explain too little
+  ASSERT_EQ(fitted_.event_share, 1.0F);
+  expectTheSlowFit();
+  fit(testing::movingPlane(MotionKind::kShake, 2.0));  // the smallest share that is used
+  ASSERT_LT(fitted_.event_share, 0.8F);
+  expectTheSlowFit();
+  addNoise(0.15F);  // which makes it smaller
+  ASSERT_EQ(fit().event_share, 1.0F);
   expectTheSlowFit();
   lost_one_of_ = 5;
   fit(testing::movingPlane(MotionKind::kShake, 0.3));
