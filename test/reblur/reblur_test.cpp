@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "fast_edi/base/image.hpp"
+#include "fast_edi/events/event_counts.hpp"
+#include "reblur/log_levels.hpp"
 #include "reblur/moving_plane.hpp"
+#include "support/event_generators.hpp"
 
 namespace fast_edi {
 namespace {
@@ -82,6 +87,126 @@ TEST(ReblurTest, NoiseStaysOnlyWhereTheSolutionIsNotTrusted) {
   }
   EXPECT_NE(deblurred(false, 1.0).outputs.back().pixels,
             deblurred(false, 0.0).outputs.back().pixels);
+}
+
+/// The last frame of a sequence, and what the filters know of it. Its latent image is the true one.
+class KnownFrame {
+ public:
+  explicit KnownFrame(const SimulationSettings& settings)
+      : model_{settings.sensor.thresholds, {4 * kNanosecondsPerMillisecond, 0.85}},
+        mean_counts_(kPlaneSize.pixelCount()) {
+    const SimulatedSequence sequence = simulateSequence(settings);
+    const SimulatedFrame& frame = sequence.frames.back();
+    window_ = frame.exposure;
+    lists_.keepIntervals(true);
+    lists_.append(testing::wireView(testing::toWire(sequence.events)));
+    counts_.count(lists_, window_);
+    quarters_.count(lists_, window_);
+    for (std::size_t i = 0; i < kPlaneSize.pixelCount(); ++i) {
+      mean_counts_[i] = static_cast<float>(counts_.off(i) + counts_.on(i));
+      blurry_dn_.push_back(static_cast<float>(frame.blurry.data[i]));
+      latent_dn_.push_back(static_cast<float>(frame.sharp.data[i]));
+    }
+  }
+
+  Reblur::Frame frame() const {
+    return {window_, blurry_dn_.data(), mean_counts_.data(), kNoise_dn, counts_.data(), &quarters_};
+  }
+
+  /// As the header says it: the steps one by one, and the image moved as far as it is trusted.
+  struct Expected {
+    std::vector<double> level_dn;
+    FittedMotion motion;
+    bool used = false;
+  };
+  Expected expected() const {
+    std::vector<float> log(latent_dn_.size());
+    logLevels(latent_dn_.data(), log.size(), kOffset_dn, log.data());
+    EventChanges changes;
+    changes.measure(lists_, window_, counts_.data(), quarters_, model_);
+    const auto contrast = static_cast<float>((model_.thresholds.on + model_.thresholds.off) / 2.0);
+    Expected result{{latent_dn_.begin(), latent_dn_.end()}, {}, false};
+    result.motion = MotionFit(kPlaneSize).fit(log.data(), changes, mean_counts_.data(), contrast);
+    const FittedMotion& m = result.motion;
+    result.used = m.found && m.path_px >= 1.5F && m.reach_px <= 40.0F && m.deviation_px <= 0.4F &&
+                  m.deviation_px <= 0.08F * m.path_px;
+    if (!result.used) return result;
+    MovingBlur blur;
+    const SceneLayout layout(kPlaneSize, m.reach_px);
+    blur.set(m.motion, layout,
+             static_cast<std::size_t>(std::clamp(std::ceil(m.path_px / 2.5F), 4.0F, 7.0F)));
+    ResidualSolver solver;
+    solver.solve({blurry_dn_.data(), latent_dn_.data(), mean_counts_.data(), kNoise_dn, kOffset_dn},
+                 blur);
+    TrustMap trust;
+    trust.measure({m.motion, changes, m.event_share, contrast, kNoise_dn, kOffset_dn}, layout,
+                  solver);
+    for (std::size_t i = 0; i < result.level_dn.size(); ++i) {
+      const std::size_t at = layout.inScene(i % kPlaneSize.width, i / kPlaneSize.width);
+      const auto solved = static_cast<double>(solver.solution()[at]);
+      result.level_dn[i] += static_cast<double>(trust.trust()[i]) * (solved - result.level_dn[i]);
+      result.level_dn[i] = std::clamp(result.level_dn[i], 0.0, 255.0);
+    }
+    return result;
+  }
+
+  /// Levels after Reblur, of an image of so many levels in an 8-bit DN.
+  template <typename Level>
+  std::vector<double> reblurred(PixelFormat format, bool clean) const {
+    const double dn = dnPerDn8(format);
+    std::vector<Level> image;
+    std::vector<float> clean_levels;
+    for (const float level : latent_dn_) {
+      clean_levels.push_back(level * static_cast<float>(dn));
+      image.push_back(static_cast<Level>(std::lround(static_cast<double>(level) * dn)));
+    }
+    Reblur reblur;
+    Reblur::Frame input = frame();
+    if (clean) input.clean_dn = clean_levels.data();
+    reblur.apply(input, lists_, model_, CameraResponse::linear(static_cast<double>(kOffset_dn)),
+                 {reinterpret_cast<std::uint8_t*>(image.data()), kPlaneSize,
+                  sizeof(Level) * kPlaneSize.width, format});
+    std::vector<double> levels;
+    for (const Level level : image) levels.push_back(static_cast<double>(level) / dn);
+    return levels;
+  }
+
+ private:
+  static constexpr float kNoise_dn = 1.2F;
+  static constexpr float kOffset_dn = 3.0F;
+
+  LatentGains::Model model_;
+  PixelEventLists lists_{kPlaneSize, {}};
+  EventCounts counts_{kPlaneSize};
+  LaterQuarters quarters_{kPlaneSize};
+  ExposureInterval window_;
+  std::vector<float> mean_counts_;
+  std::vector<float> blurry_dn_;
+  std::vector<float> latent_dn_;
+};
+
+/// Motions on both sides of what is known well enough, and paths of four to seven instants.
+TEST(ReblurTest, IsItsStepsOneByOne) {
+  int used = 0;
+  int unused = 0;
+  for (const auto& [kind, scale] : {std::pair{MotionKind::kShake, 0.15},
+                                    {MotionKind::kShake, 0.4},
+                                    {MotionKind::kShake, 1.0},
+                                    {MotionKind::kShake, 1.3},
+                                    {MotionKind::kShake, 1.4},
+                                    {MotionKind::kMild, 2.2}}) {
+    const KnownFrame frame(movingPlane(kind, scale));
+    const KnownFrame::Expected expected = frame.expected();
+    (expected.used ? used : unused) += 1;
+    const std::vector<double> bytes = frame.reblurred<std::uint8_t>(PixelFormat::kMono8, false);
+    const std::vector<double> wide = frame.reblurred<std::uint16_t>(PixelFormat::kMono16, true);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      ASSERT_NEAR(bytes[i], expected.level_dn[i], 0.501) << scale << ", " << i;
+      ASSERT_NEAR(wide[i], expected.level_dn[i], 0.01) << scale << ", " << i;
+    }
+  }
+  EXPECT_EQ(used, 3);
+  EXPECT_EQ(unused, 3);
 }
 
 TEST(ReblurTest, SupportsMonochromeImagesOfALinearResponse) {
