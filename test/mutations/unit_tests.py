@@ -22,13 +22,13 @@ MEMORY_LIMIT = 8 << 30  # bytes of addresses; a change may ask for any amount
 class UnitTests:
     """A program of tests and the library that it tests, in a build folder of their own.
 
-    Only the changed source is compiled, and only its library linked, both into the folder `changed`
+    Only the changed source is compiled, and only its library linked, both into a folder `changed`
     beside the build, which the program then searches first. Sources and build stay as they are.
     """
 
     def __init__(self, root, build, library, program):
         self.root, self.build_folder, self.library, self.program = root, build, library, program
-        self.changed = build / "changed"
+        self.changed = build / "changed" / library
         self.suites = {}  # how long each takes, ms
         self.names = set()  # of all tests
 
@@ -119,7 +119,7 @@ class UnitTests:
         command = next(shlex.split(entry["command"]) for entry in commands
                        if entry["file"] == str(self.root / path))
         original = self.build_folder / command[command.index("-o") + 1]
-        self.changed.mkdir(exist_ok=True)
+        self.changed.mkdir(parents=True, exist_ok=True)
         # The names are those of the original, since they are in the object.
         source = self.changed / pathlib.Path(path).name
         source.write_text(text)
