@@ -72,6 +72,7 @@ void printSummary(std::ostream& out, const BagDeblurReport& report) {
   out << "events\n";
   out << "  " << std::setw(10) << counters.events_in << "  in " << counters.event_arrays
       << " arrays\n";
+  printCount(out, counters.event_arrays_repeated, "arrays that came before: dropped");
   printCount(out, counters.event_array_gaps, "holes in the arrays' sequence numbers");
   printCount(out, counters.event_restarts, "restarts of the arrays' publisher");
   printCount(out, counters.events_late, "dropped: older than those before");

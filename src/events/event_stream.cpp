@@ -34,6 +34,14 @@ void EventStream::take(const WireEvents& events, SensorSize size,
   ++counters_.event_arrays;
   counters_.events_in += events.count;
   stopped_ = false;
+  if (isRepeated(events, size)) {
+    ++counters_.event_arrays_repeated;
+    counters_.events_repeated += events.count;
+    if (sequence && !sequence_gaps_.isLast(*sequence)) {
+      sequence_gaps_.restart();
+    }
+    return;
+  }
   const bool refused = !isValid(size);
   const SequenceStep step =
       sequence ? sequence_gaps_.step(*sequence) : SequenceStep::kNothingMissing;
@@ -60,6 +68,18 @@ void EventStream::take(const WireEvents& events, SensorSize size,
   markMissingArrays();  // once more: there may be a new epoch
   arrays_missing_ = false;
   ingest(events, true);
+  recent_arrays_.add(events);
+}
+
+bool EventStream::isRepeated(const WireEvents& events, SensorSize size) const {
+  if (events.empty() || !lists_ || lists_->size() != size) {
+    return false;
+  }
+  // Looked for only where it can be: most arrays are newer than all before them.
+  const bool is_near =
+      lists_->hasNewest() && timeOf(events, 0) <= lists_->newest() &&
+      timeOf(events, events.count - 1) >= lists_->newest() - limits_.max_backward_jump_ns;
+  return (is_near || !held_.empty()) && recent_arrays_.contains(events);
 }
 
 void EventStream::noteLost(std::size_t events) {
@@ -178,6 +198,7 @@ void EventStream::beginEpoch(std::int64_t first_event_ns) {
 
 void EventStream::flush() {
   lists_->flush();
+  recent_arrays_.clear();
   coverage_.reset();
   ++generation_;
 }
@@ -230,7 +251,7 @@ bool EventStream::covers(const ExposureInterval& interval) const {
 }
 
 std::size_t EventStream::memoryBytes() const {
-  return (lists_ ? lists_->memoryBytes() : 0) + held_.capacity();
+  return (lists_ ? lists_->memoryBytes() : 0) + held_.capacity() + sizeof(recent_arrays_);
 }
 
 }  // namespace fast_edi

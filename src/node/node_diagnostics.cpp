@@ -123,6 +123,10 @@ void NodeDiagnostics::collectComplaints(const NodeSnapshot& now) {
                std::to_string(kMaxSide_px));
   complain("glitch", c.events_glitched, b.events_glitched,
            "event(s)" + on_events + " dropped: a time jump that the next array did not confirm");
+  complain("arrays repeated", c.event_arrays_repeated, b.event_arrays_repeated,
+           "event array(s)" + on_events +
+               " that had come before dropped: is the topic published twice, or a recording played "
+               "twice?");
   complain("array gap", c.event_array_gaps, b.event_array_gaps,
            "hole(s) in header.seq" + on_events + ": arrays were lost on the way");
   complain("event restart", c.event_restarts, b.event_restarts,
@@ -248,6 +252,8 @@ void NodeDiagnostics::fill(const LatencyRecord& close_latency, const LatencyReco
   status.add("Events overflowed", c.events_overflowed);
   status.add("Events refused", c.events_refused);
   status.add("Event suspensions", now_.event_suspensions);
+  status.add("Events repeated", c.events_repeated);
+  status.add("Event arrays repeated", c.event_arrays_repeated);
   status.add("Event array gaps", c.event_array_gaps);
   status.add("Event arrays missing", c.event_arrays_missing);
   status.add("Event publisher restarts", c.event_restarts);

@@ -114,6 +114,7 @@ py::dict counters(ArrayDeblurrer& deblurrer) {
   result["events_in"] = counters.events_in;
   result["events_late"] = counters.events_late;
   result["events_glitched"] = counters.events_glitched;
+  result["events_repeated"] = counters.events_repeated;
   result["events_overflowed"] = counters.events_overflowed;
   result["event_arrays"] = counters.event_arrays;
   result["event_arrays_missing"] = counters.event_arrays_missing;

@@ -43,7 +43,8 @@ class EventStreamTest : public ::testing::Test {
   void checkThatNothingIsLost() const {
     const std::uint64_t accepted = stream.lists() ? stream.lists()->endSequence() : 0;
     const std::uint64_t gone = counters.events_late + counters.events_outside +
-                               counters.events_glitched + counters.events_refused + dropped;
+                               counters.events_glitched + counters.events_refused +
+                               counters.events_repeated + dropped;
     EXPECT_LE(accepted + gone, counters.events_in);
     if (held == 0) {
       EXPECT_EQ(accepted + gone, counters.events_in);
@@ -179,6 +180,83 @@ TEST_F(EventStreamTest, ASequenceThatStaysOrFallsMakesNoHole) {
   takeAs(0, {kStart + 30 * kMs});
   EXPECT_EQ(counters.event_array_gaps, 0u);
   EXPECT_TRUE(stream.covers({kStart, kStart + 30 * kMs}));
+}
+
+TEST_F(EventStreamTest, WhatTwoPublishersSendIsUsedOnce) {
+  for (int i = 0; i < 6; ++i) {
+    const std::int64_t start = kStart + i * 10 * kMs;
+    // The last events of an array often have one time.
+    const std::vector<std::int64_t> times = {start, start + 5 * kMs, start + 9 * kMs,
+                                             start + 9 * kMs};
+    // Numbers of their own; now this one is first, now the other.
+    const std::uint32_t numbers[] = {100U + static_cast<std::uint32_t>(i),
+                                     3U + static_cast<std::uint32_t>(i)};
+    takeAs(numbers[i % 2], times);
+    takeAs(numbers[1 - i % 2], times);
+  }
+  EXPECT_EQ(buffered(), 6u * 4u);
+  EXPECT_EQ(counters.event_arrays, 12u);
+  EXPECT_EQ(counters.event_arrays_repeated, 6u);
+  EXPECT_EQ(counters.events_repeated, 6u * 4u);
+  EXPECT_EQ(counters.events_late, 0u);
+  EXPECT_EQ(counters.event_restarts, 0u);
+  EXPECT_EQ(counters.event_array_gaps, 0u);
+  EXPECT_TRUE(stream.covers({kStart, newest()}));
+}
+
+TEST_F(EventStreamTest, ASecondPublisherMayLagBehind) {
+  constexpr int kLag = 20;
+  const auto times = [](int i) {
+    return std::vector<std::int64_t>{kStart + i * 10 * kMs, kStart + (i * 10 + 9) * kMs};
+  };
+  for (int i = 0; i < 3 * kLag; ++i) {
+    take(times(i));
+    if (i >= kLag) {
+      const std::uint32_t number = sequence;
+      takeAs(static_cast<std::uint32_t>(i - kLag), times(i - kLag));
+      sequence = number;
+    }
+  }
+  EXPECT_EQ(buffered(), 3u * kLag * 2u);
+  EXPECT_EQ(counters.event_arrays_repeated, 2u * kLag);
+  EXPECT_EQ(counters.event_restarts, 0u);
+  EXPECT_TRUE(stream.covers({kStart, newest()}));
+}
+
+TEST_F(EventStreamTest, AnArrayThatComesTwiceHidesNoLoss) {
+  for (const std::uint32_t number : {1U, 2U, 3U, 5U, 6U}) {
+    for (int twice = 0; twice < 2; ++twice) {
+      takeAs(number, {kStart + number * 10 * kMs, kStart + (number * 10 + 5) * kMs});
+    }
+  }
+  EXPECT_EQ(counters.event_arrays_repeated, 5u);
+  EXPECT_EQ(counters.event_array_gaps, 1u);
+  EXPECT_EQ(counters.event_arrays_missing, 1u);
+}
+
+TEST_F(EventStreamTest, AnArrayThatComesTwiceConfirmsNoJump) {
+  take({kStart});
+  held = 2;
+  const std::vector<std::int64_t> ahead = {kStart + 20 * kSecond, kStart + 20 * kSecond + kMs};
+  take(ahead);
+  take(ahead);
+  EXPECT_EQ(counters.event_time_jumps, 0u);
+  EXPECT_EQ(counters.event_arrays_repeated, 1u);
+  held = 0;
+  take({kStart + kMs});
+  EXPECT_EQ(counters.events_glitched, 2u);
+  EXPECT_EQ(buffered(), 2u);
+}
+
+TEST_F(EventStreamTest, ARecordingThatIsPlayedAgainIsNoRepetition) {
+  const std::vector<std::int64_t> first = {kStart, kStart + 10 * kMs};
+  for (int pass = 0; pass < 2; ++pass) {
+    takeAs(1, first);
+    takeAs(2, {kStart + 600 * kMs, kStart + 610 * kMs});
+  }
+  EXPECT_EQ(counters.event_arrays_repeated, 0u);
+  EXPECT_EQ(counters.event_time_jumps, 1u);
+  EXPECT_EQ(buffered(), 4u);
 }
 
 TEST_F(EventStreamTest, AnArrayWithoutAValidSizeIsRefusedAndLeavesAHole) {
@@ -404,7 +482,8 @@ TEST_F(EventStreamTest, TheSplitIntoArraysDoesNotMatter) {
     split.take(testing::wireView(last), kSize, 0);  // confirms what ended with the last array
     EXPECT_EQ(c.event_time_jumps, 2u) << "arrays of " << length;
     EXPECT_EQ(c.events_glitched, 1u) << "arrays of " << length;
-    EXPECT_EQ(c.events_late, 1u) << "arrays of " << length;
+    // By itself in an array, it is one that came before.
+    EXPECT_EQ(c.events_late + c.events_repeated, 1u) << "arrays of " << length;
     EXPECT_EQ(split.lists()->eventCount(), kRun + 1u) << "arrays of " << length;
     EXPECT_TRUE(split.covers({kStart + 30 * kSecond, times_ns.back()}));
   }

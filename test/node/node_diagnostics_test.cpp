@@ -179,6 +179,7 @@ TEST_F(NodeDiagnosticsTest, ComplainsOfEveryKindOfLoss) {
                         Case{&DeblurCounters::events_glitched, "time jump"},
                         Case{&DeblurCounters::events_overflowed, "max_buffered_events"},
                         Case{&DeblurCounters::event_arrays_refused, "1 to 32767"},
+                        Case{&DeblurCounters::event_arrays_repeated, "published twice"},
                         Case{&DeblurCounters::event_array_gaps, "header.seq"},
                         Case{&DeblurCounters::event_restarts, "restart(s) of the publisher"},
                         Case{&DeblurCounters::event_time_jumps, "/dvs/events"},

@@ -205,7 +205,7 @@ class InvariantChecker {
     ASSERT_TRUE(sink_.isBalanced());
     ASSERT_LE(status.buffered_events, max_events_);
     ASSERT_LE(c.events_late + c.events_outside + c.events_glitched + c.events_refused +
-                  c.events_overflowed + status.buffered_events,
+                  c.events_repeated + c.events_overflowed + status.buffered_events,
               c.events_in);
     for (; checked_ < sink_.outputs.size(); ++checked_) {
       const OutputFrame& output = sink_.outputs[checked_].frame;

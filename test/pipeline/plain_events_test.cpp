@@ -127,10 +127,11 @@ TEST_F(PlainEventsTest, ArraysWithoutNumbersTellOfNoGap) {
   for (int i = 0; i < 5; ++i) {
     add({{1, 1, i * kMs, true}});
   }
-  const std::vector<std::uint8_t> wire = testing::toWire({{1, 1, 6 * kMs, true}});
   for (const std::uint32_t sequence : {7u, 8u}) {
+    const std::int64_t t_ns = sequence * kMs;
+    const std::vector<std::uint8_t> wire = testing::toWire({{1, 1, t_ns, true}});
     deblurrer.addEvents(testing::wireView(wire), kSize, sequence, 0);
-    add({{1, 1, 6 * kMs, true}});
+    add({{2, 1, t_ns, true}});
   }
   EXPECT_EQ(deblurrer.counters().event_array_gaps, 0u);
   EXPECT_EQ(deblurrer.counters().event_restarts, 0u);

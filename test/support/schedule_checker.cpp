@@ -147,7 +147,7 @@ std::string ScheduleChecker::countFault() const {
       c.frames_still > c.frames_deblurred) {
     return "counts of closed frames do not add up";
   }
-  if (c.events_late + c.events_outside + c.events_glitched + c.events_refused +
+  if (c.events_late + c.events_outside + c.events_glitched + c.events_refused + c.events_repeated +
           c.events_overflowed + status.buffered_events >
       c.events_in) {
     return "more events dropped, refused and buffered than came in";

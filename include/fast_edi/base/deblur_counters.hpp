@@ -40,11 +40,13 @@ struct DeblurCounters {
   std::uint64_t events_glitched = 0;    ///< unconfirmed time jump, or no stamp (isStamp()): dropped
   std::uint64_t events_refused = 0;     ///< in an array without a valid sensor size: dropped
   std::uint64_t events_overflowed = 0;  ///< max_buffered_events reached: oldest dropped
+  std::uint64_t events_repeated = 0;    ///< in arrays that had come before: dropped
   std::uint64_t event_arrays = 0;
-  std::uint64_t event_arrays_refused = 0;  ///< width or height not within 1..32767
-  std::uint64_t event_array_gaps = 0;      ///< holes in header.seq
-  std::uint64_t event_arrays_missing = 0;  ///< numbers left out by those holes
-  std::uint64_t event_restarts = 0;        ///< header.seq fell: the publisher was restarted
+  std::uint64_t event_arrays_refused = 0;   ///< width or height not within 1..32767
+  std::uint64_t event_arrays_repeated = 0;  ///< came before, within max_backward_jump
+  std::uint64_t event_array_gaps = 0;       ///< holes in header.seq
+  std::uint64_t event_arrays_missing = 0;   ///< numbers left out by those holes
+  std::uint64_t event_restarts = 0;         ///< header.seq fell: the publisher was restarted
   std::uint64_t event_time_jumps = 0;
   std::uint64_t frame_time_jumps = 0;
   std::uint64_t size_changes = 0;  ///< sensor size of the event arrays changed

@@ -11,6 +11,10 @@
 /// An array jumps back once by itself; a second jump that lasts to its end is held apart like one
 /// ahead. Events that were held apart jump twice; what lies behind a third jump is dropped.
 ///
+/// Repetitions. An array that came before, and whose jump back would be none, is dropped. Others of
+/// its events would be late; those at the time of the newest event would count twice. A publisher
+/// with numbers of its own sends such arrays, so that numbers say nothing then.
+///
 /// Complexity: linear in the events, whatever their times; see recordsRead(). One
 /// PixelEventLists::append() for each array unless something is wrong with its times.
 #pragma once
@@ -26,6 +30,7 @@
 #include "fast_edi/events/event_coverage.hpp"
 #include "fast_edi/events/event_wire.hpp"
 #include "fast_edi/events/pixel_event_lists.hpp"
+#include "fast_edi/events/recent_arrays.hpp"
 #include "fast_edi/events/sequence_gaps.hpp"
 #include "fast_edi/events/time_jump.hpp"
 
@@ -89,6 +94,7 @@ class EventStream {
   std::size_t memoryBytes() const;
 
  private:
+  bool isRepeated(const WireEvents& events, SensorSize size) const;
   void markMissingArrays();
   void setSize(SensorSize size, const WireEvents& next);
   void resolveHeldJump(std::int64_t next_array_ns);
@@ -103,6 +109,7 @@ class EventStream {
   std::unique_ptr<PixelEventLists> lists_;
   bool seen_ = false;
   SequenceGaps sequence_gaps_;
+  RecentArrays recent_arrays_;  ///< of this epoch
   bool stopped_ = false;
   bool arrays_missing_ = false;  ///< between the last array taken in and the next
   EventCoverage coverage_;

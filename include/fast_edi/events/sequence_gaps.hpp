@@ -34,6 +34,8 @@ class SequenceGaps {
     last_ = sequence;
     return step;
   }
+  /// Whether the last message had this number, as far as that is known.
+  bool isLast(std::uint32_t sequence) const { return last_ == sequence; }
   /// Messages that the last step left out.
   std::uint32_t missing() const { return missing_; }
   void restart() {
