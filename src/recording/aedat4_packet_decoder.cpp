@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "fast_edi/base/number_text.hpp"
 #include "recording/aedat4_header.hpp"
 #include "recording/aedat4_stamp.hpp"
 #include "recording/damage_notes.hpp"
@@ -67,11 +68,28 @@ void Aedat4PacketDecoder::open(FlatBytes bytes, std::size_t stream, std::uint64_
   }
 }
 
-bool Aedat4PacketDecoder::give(RecordingItem& item, std::int64_t record_ns) {
-  record_ns_ = std::max(record_ns_, record_ns);
+/// \param t_ns of the item, or of its last element
+bool Aedat4PacketDecoder::give(RecordingItem& item, std::int64_t t_ns) {
   item.stream = stream_;
-  item.record_ns = record_ns_;
+  item.record_ns = advanceClock(t_ns);
   return true;
+}
+
+std::int64_t Aedat4PacketDecoder::advanceClock(std::int64_t t_ns) {
+  const std::int64_t record_ns = clock_.advance(t_ns);
+  if (const std::optional<std::int64_t> ahead_ns = clock_.refutedBy()) {
+    constexpr int kDecimals = 1;
+    noteDamage(damage_,
+               {ahead_offset_, "a time " +
+                                   fixedText(static_cast<double>(*ahead_ns) /
+                                                 static_cast<double>(kNanosecondsPerSecond),
+                                             kDecimals) +
+                                   " s ahead of those around it: it does not count"});
+  }
+  if (clock_.isAhead()) {
+    ahead_offset_ = packet_offset_;
+  }
+  return record_ns;
 }
 
 bool Aedat4PacketDecoder::giveEvents(RecordingItem& item) {
@@ -108,6 +126,9 @@ bool Aedat4PacketDecoder::giveSomeEvents(RecordingItem& item) {
     return false;
   }
   item.content = RecordedEvents{events_.data(), count};
+  if (count > 1) {
+    advanceClock(events_[count - 2].t_ns);  // where the last one is wrong, that is when they came
+  }
   return give(item, events_[count - 1].t_ns);
 }
 

@@ -12,6 +12,7 @@
 #include "fast_edi/recording/recording.hpp"
 #include "recording/aedat4_frame_decoder.hpp"
 #include "recording/flatbuffer.hpp"
+#include "recording/record_clock.hpp"
 
 namespace fast_edi {
 
@@ -35,7 +36,8 @@ class Aedat4PacketDecoder {
 
  private:
   void note(const std::string& what);
-  bool give(RecordingItem& item, std::int64_t record_ns);
+  bool give(RecordingItem& item, std::int64_t t_ns);
+  std::int64_t advanceClock(std::int64_t t_ns);
   bool giveEvents(RecordingItem& item);
   bool giveSomeEvents(RecordingItem& item);
   bool giveOther(RecordingItem& item);
@@ -53,7 +55,8 @@ class Aedat4PacketDecoder {
   std::size_t done_ = 0;  ///< elements that were given
   std::vector<Event> events_;
   Aedat4FrameDecoder frame_decoder_;
-  std::int64_t record_ns_ = 0;  ///< the latest that was given
+  RecordClock clock_;
+  std::uint64_t ahead_offset_ = 0;  ///< of the packet whose time the clock does not trust yet
 };
 
 }  // namespace fast_edi

@@ -9,6 +9,7 @@
 #include "fast_edi/recording/aedat4_reader.hpp"
 #include "recording/damage_notes.hpp"
 #include "recording/number_at.hpp"
+#include "recording/record_clock.hpp"
 
 namespace fast_edi {
 namespace {
@@ -20,6 +21,23 @@ constexpr std::size_t kPacketStartBytes = 12;
 constexpr std::uint32_t kLz4Magic = 0x184D2204;
 constexpr std::uint32_t kZstdMagic = 0xFD2FB528;
 
+/// When the packets of a stream end: as the file's table has it, but that no time goes back, and
+/// none that is far ahead of all before it counts unless the next packet lies there, too.
+void straightenEnds(std::vector<Aedat4TableEntry*>& packets) {
+  constexpr std::int64_t kMaxStep_us = RecordClock::kMaxStep_ns / kNanosecondsPerMicrosecond;
+  if (packets.size() > 1 && packets[0]->end_us > packets[1]->end_us + kMaxStep_us) {
+    packets[0]->end_us = packets[1]->end_us;
+  }
+  for (std::size_t i = 1; i < packets.size(); ++i) {
+    const std::int64_t before_us = packets[i - 1]->end_us;
+    std::int64_t& end_us = packets[i]->end_us;
+    const bool goes_back = i + 1 < packets.size() && packets[i + 1]->end_us < end_us - kMaxStep_us;
+    if (end_us < before_us || (end_us > before_us + kMaxStep_us && goes_back)) {
+      end_us = before_us;
+    }
+  }
+}
+
 /// Packets in the order of time, when the data table shows that all frames lie before or behind all
 /// events; else none.
 std::vector<Aedat4Packet> mergedOrder(std::vector<Aedat4TableEntry> entries,
@@ -27,15 +45,14 @@ std::vector<Aedat4Packet> mergedOrder(std::vector<Aedat4TableEntry> entries,
   struct Range {
     std::uint64_t first = std::numeric_limits<std::uint64_t>::max();
     std::uint64_t last = 0;
-    std::int64_t latest_us = std::numeric_limits<std::int64_t>::min();
+    std::vector<Aedat4TableEntry*> packets;
   };
   std::map<std::int32_t, Range> ranges;
   for (Aedat4TableEntry& entry : entries) {
     Range& range = ranges[entry.stream];
     range.first = std::min(range.first, entry.offset);
     range.last = std::max(range.last, entry.offset);
-    // Each stream keeps its order where its time goes back.
-    range.latest_us = entry.end_us = std::max(range.latest_us, entry.end_us);
+    range.packets.push_back(&entry);
   }
   const auto is_of = [&streams](std::int32_t stream, StreamKind kind) {
     const auto found = streams.find(stream);
@@ -52,6 +69,9 @@ std::vector<Aedat4Packet> mergedOrder(std::vector<Aedat4TableEntry> entries,
   std::vector<Aedat4Packet> packets;
   if (!apart) {
     return packets;
+  }
+  for (auto& [stream, range] : ranges) {
+    straightenEnds(range.packets);
   }
   std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
     return a.end_us != b.end_us ? a.end_us < b.end_us : a.offset < b.offset;
