@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -23,8 +24,28 @@ constexpr std::size_t kMaxDamageNotes = 10;
 constexpr const char* kWord = "word";
 
 void printHelp(const po::options_description& options, const HelpText& text) {
-  std::cout << text.usage << "\n" << options << "\nExit code: " << text.exit_codes << "\n";
+  std::ostringstream described;
+  described << options;
+  // Options in groups begin with a line of their own.
+  const std::string lines = described.str();
+  std::cout << text.usage << (lines.front() == '\n' ? "" : "\n") << lines << "\n";
+  if (text.usage.find("parameter:=value") != std::string::npos) {
+    std::cout << "Parameters: `rosrun fast_edi list_parameters` lists them.\n\n";
+  }
+  std::cout << "Exit code: " << text.exit_codes << "\n";
 }
+
+/// Says how the tool is called, too: whoever calls it without arguments does not know.
+class CalledWithoutArguments : public po::error {
+ public:
+  /// \param usage its first paragraph is shown
+  explicit CalledWithoutArguments(const std::string& usage)
+      : po::error("called without arguments"), usage_(usage.substr(0, usage.find("\n\n"))) {}
+  const std::string& usage() const { return usage_; }
+
+ private:
+  std::string usage_;
+};
 
 void refuseEmptyValues(const po::parsed_options& parsed) {
   for (const po::option& option : parsed.options) {
@@ -78,7 +99,7 @@ std::optional<po::variables_map> readCommandLine(int argc, char** argv,
                                                  const HelpText& text,
                                                  std::vector<std::string>* words) {
   if (argc <= 1 && text.needs_arguments) {
-    throw po::error("called without arguments");
+    throw CalledWithoutArguments(text.usage);
   }
   po::options_description all;
   all.add(options).add_options()(kWord, po::value<std::vector<std::string>>());
@@ -114,7 +135,7 @@ void requireRecordings(const std::vector<std::string>& words, std::vector<std::s
                        std::vector<std::string>& overrides) {
   sortWords(words, recordings, overrides);
   if (recordings.empty()) {
-    throw po::error("expected a BAG");
+    throw po::error("expected a RECORDING");
   }
 }
 
@@ -195,6 +216,8 @@ int runTool(const std::string& name, const std::function<int()>& work) {
       throw std::runtime_error("standard output cannot be written");
     }
     return code;
+  } catch (const CalledWithoutArguments& error) {
+    std::cerr << name << ": " << error.what() << " (see --help)\n" << error.usage() << "\n";
   } catch (const po::error& error) {
     std::cerr << name << ": " << error.what() << " (see --help)\n";
   } catch (const std::exception& error) {

@@ -37,7 +37,7 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
       {"Usage: contrast_from_bias FILE.yaml [key:=value ...]\n\n"
        "Prints the bias currents and contrast thresholds that a configuration stands for, "
        "e.g. of\ncfg/davis346.yaml, or that the driver's own file of biases stands for. "
-       "Values given as key:=value replace those of the file, "
+       "Values given as\nkey:=value replace those of the file, "
        "e.g. biases/OnBn_fine:=200.\n",
        "0 thresholds printed (warnings included); 1 wrong arguments, or a configuration that "
        "cannot\nbe used."},

@@ -85,9 +85,10 @@ struct Count {
 
 po::options_description describeOptions(Arguments& arguments) {
   po::options_description options("Options");
-  options.add_options()("help,h", "print this")("config",
-                                                po::value(&arguments.config)->value_name("YAML"),
-                                                "parameters, e.g. cfg/davis346.yaml")(
+  options.add_options()("help,h", "print this")(
+      "config", po::value(&arguments.config)->value_name("YAML"),
+      "parameters, e.g. cfg/davis346.yaml; not needed when both contrast "
+      "thresholds are given as name:=value")(
       "family", tools::textOption(arguments.detector.family, "NAME"), "family of the tags")(
       "decimate",
       po::value(&arguments.detector.decimate)
@@ -106,7 +107,7 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   std::vector<std::string> words;
   auto values = tools::readCommandLine(
       argc, argv, visible,
-      {"Usage: count_tags BAG... [options] [parameter:=value ...]\n\n"
+      {"Usage: count_tags RECORDING... [options] [parameter:=value ...]\n\n"
        "Counts AprilTags in the frames of a recording: blurry, by plain EDI (filter:\n"
        "false), by this package as its parameters are, and in the true sharp frames\n"
        "where the recording has them. A tag is false when the true frame of its stamp\n"

@@ -38,10 +38,11 @@ struct Arguments {
 bool parseArguments(int argc, char** argv, Arguments& arguments) {
   fast_edi::TopicNames& topics = arguments.topics;
   po::options_description visible("Options");
-  visible.add_options()("help,h", "print this")("in", po::value(&arguments.bag)->required(),
-                                                "recording")(
-      "config", po::value(&arguments.config)->required(), "YAML file with the parameters")(
-      "parameters-out", po::value(&arguments.parameters_file)->required(),
+  visible.add_options()("help,h", "print this")(
+      "in", po::value(&arguments.bag)->required()->value_name("BAG"), "recording")(
+      "config", po::value(&arguments.config)->required()->value_name("YAML"),
+      "YAML file with the parameters")(
+      "parameters-out", po::value(&arguments.parameters_file)->required()->value_name("YAML"),
       "YAML file to write all parameters to, those given as name:=value included")(
       "camera-info", po::value(&topics.camera_info)->value_name("TOPIC"),
       "calibration; the sibling of --image by default, may be missing");

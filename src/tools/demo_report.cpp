@@ -528,12 +528,15 @@ void Report::print(std::ostream& out) const {
 bool parseArguments(int argc, char** argv, Arguments& arguments) {
   TopicNames& topics = arguments.topics;
   po::options_description visible("Options");
-  visible.add_options()("help,h", "print this")("in", po::value(&arguments.bag)->required(),
-                                                "recording")(
-      "live", po::value(&arguments.live)->required(), "what was recorded of the nodelet")(
-      "config", po::value(&arguments.config)->required(), "YAML file with the parameters")(
-      "picture", po::value(&arguments.picture)->required(), "picture to write, e.g. out.png")(
-      "name", po::value(&arguments.name), "heading of the picture")(
+  visible.add_options()("help,h", "print this")(
+      "in", po::value(&arguments.bag)->required()->value_name("BAG"), "recording")(
+      "live", po::value(&arguments.live)->required()->value_name("BAG"),
+      "what was recorded of the nodelet")(
+      "config", po::value(&arguments.config)->required()->value_name("YAML"),
+      "YAML file with the parameters")("picture",
+                                       po::value(&arguments.picture)->required()->value_name("PNG"),
+                                       "picture to write, e.g. out.png")(
+      "name", po::value(&arguments.name)->value_name("TEXT"), "heading of the picture")(
       "camera-info", po::value(&topics.camera_info)->value_name("TOPIC"),
       "calibration; the sibling of --image by default, may be missing")(
       "truth", tools::textOption(arguments.truth, "TOPIC"), "true sharp frames; may be missing");
@@ -544,7 +547,7 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
       {"Usage: demo_report --in BAG --live BAG --config YAML --picture PNG [options] "
        "[parameter:=value ...]\n\n"
        "Compares the frames of a recording with the deblurred ones that the nodelet "
-       "published while it was played.\n",
+       "published while it\nwas played.\n",
        "0 done; 1 failed, or a frame has no output."},
       &arguments.overrides);
   if (!values) {

@@ -52,9 +52,10 @@ bool parseArguments(int argc, char** argv, Arguments& arguments) {
   std::vector<std::string> words;
   auto values = tools::readCommandLine(
       argc, argv, visible,
-      {"Usage: validate_bag BAG... [--config cfg/davis346.yaml] [options] [parameter:=value "
+      {"Usage: validate_bag RECORDING... [--config cfg/davis346.yaml] [options] [parameter:=value "
        "...]\n\n"
-       "Looks through a recording for what breaks deblurring. For each finding it prints what\n"
+       "Looks through a recording of any format for what breaks deblurring. For each finding it "
+       "prints what\n"
        "was expected, what was found and what to set, and at the end lines for a YAML file.\n"
        "Topics of other names are taken when they are the only ones of their type.\n",
        "0 no findings; 1 failed; 2 findings."},

@@ -65,7 +65,7 @@ TEST_F(CountTagsTest, NamesWhatIsWrong) {
   fails(kDemo, "contrast_threshold_on");
   fails("a.bag b.bag" + kThresholds, "a.bag");
   fails(kDemo + " --family 36h12" + kThresholds, "expected one of: 36h11");
-  fails(kThresholds, "expected a BAG");
+  fails(kThresholds, "expected a RECORDING");
   EXPECT_EQ(runCommand(kTools + "count_tags --help").exit_code, 0);
 }
 

@@ -52,6 +52,9 @@ std::string contentOf(const std::string& path) {
   return content.str();
 }
 
+/// Characters that a terminal of usual width shows, and some.
+constexpr std::size_t kWidestLine = 105;
+
 class ToolHabits : public ::testing::TestWithParam<std::string> {
  protected:
   std::string tool() const { return kTools + GetParam() + " "; }
@@ -63,6 +66,14 @@ TEST_P(ToolHabits, ExplainsItself) {
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.output.rfind("Usage: " + GetParam(), 0), 0u) << result.output;
     EXPECT_THAT(result.output, AllOf(HasSubstr("--help"), HasSubstr("\nExit code: 0 ")));
+    EXPECT_EQ(result.output.find("parameter:=value") != std::string::npos,
+              result.output.find("list_parameters` lists them") != std::string::npos);
+    EXPECT_THAT(result.output, Not(HasSubstr(" arg "))) << "an option without a name for its value";
+    EXPECT_THAT(result.output, Not(HasSubstr("\n\n\n")));
+    std::istringstream lines(result.output);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(line.size(), kWidestLine) << line;
+    }
   }
   EXPECT_EQ(runCommand(tool() + "--help >/dev/full").exit_code, 1);
 }
@@ -83,7 +94,9 @@ TEST_P(ToolHabits, RefusesToDoNothing) {
     return;
   }
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_EQ(result.output, GetParam() + ": called without arguments (see --help)\n");
+  const std::string reason = GetParam() + ": called without arguments (see --help)\n";
+  EXPECT_EQ(result.output.rfind(reason + "Usage: " + GetParam() + " ", 0), 0u) << result.output;
+  EXPECT_EQ(result.output.find("\n\n"), std::string::npos) << "all of the help";
 }
 
 INSTANTIATE_TEST_SUITE_P(, ToolHabits, ::testing::ValuesIn(toolNames()),

@@ -87,12 +87,11 @@ tools::HelpText helpText() {
       "disk or\nkill -9 leaves of it can be opened after `rosbag reindex`. With --out-dir, nothing "
       "is left of an\noutput that did not become complete, and a recording that fails does not "
       "end the run.\n",
-      "0 done; 1 failed, no output, with --out-dir of at least one recording; 2 the input was cut "
-      "short\nor damaged: all of it that could be read is in the output, which is complete and "
-      "indexed; 130, 143\ninterrupted by Ctrl-C or SIGTERM: the output is complete and indexed up "
-      "to there (with --out-dir,\nthere is none of this recording and those behind it); 3 done, "
-      "but no "
-      "frame was deblurred, with\n--out-dir of at least one recording: the last line says why."};
+      "0 done; 1 failed, no output, with --out-dir of at least one recording; 2 the input was\n"
+      "cut short or damaged: all of it that could be read is in the output, which is complete and\n"
+      "indexed; 3 done, but no frame was deblurred, with --out-dir of at least one recording: the\n"
+      "last line says why; 130, 143 interrupted by Ctrl-C or SIGTERM: the output is complete and\n"
+      "indexed up to there (with --out-dir, there is none of this recording and those behind it)."};
 }
 
 void requireOutput(const Arguments& arguments) {

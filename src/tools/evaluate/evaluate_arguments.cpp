@@ -123,16 +123,14 @@ po::options_description describeOptions(Arguments& arguments) {
 
 tools::HelpText helpText() {
   return {
-      "Usage: evaluate BAG... [options] [parameter:=value ...]\n"
+      "Usage: evaluate RECORDING... [options] [parameter:=value ...]\n"
       "       evaluate --sequences SET [options] [parameter:=value ...]\n\n"
       "Compares the blurry input, plain EDI, counter EDI, EDI with the contrast found by\n"
       "sharpness, the package's own output, and other methods that are asked for: table\n"
-      "on standard output, report with pictures in a folder. Parameters given as name:=value come "
-      "before the "
-      "YAML file's.\n"
-      "Latent images show the instant that the parameter reference names. Colour is turned to grey "
-      "first; raw Bayer\n"
-      "frames are measured as they are. --force removes the earlier report of a folder.\n",
+      "on standard output, report with pictures in a folder. Parameters given as name:=value\n"
+      "come before the YAML file's. Latent images show the instant that the parameter\n"
+      "reference names. Colour is turned to grey first; raw Bayer frames are measured as they\n"
+      "are. --force removes the earlier report of a folder.\n",
       "0 done; 1 failed; 2 the recording was cut short or damaged."};
 }
 
