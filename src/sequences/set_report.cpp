@@ -197,7 +197,7 @@ void printSetFactors(std::ostream& out, const SetEvaluation& evaluation) {
 
 void printSetShares(std::ostream& out, const SetEvaluation& evaluation) {
   const std::size_t truth = truthColumn(evaluation);
-  for (std::size_t column = kFirstVariantColumn; column < truth; ++column) {
+  for (std::size_t column = kFirstVariantColumn; column <= truth; ++column) {
     printHeader(out,
                 {evaluation.columns[column], "of the better of plain EDI and blurry (worst)",
                  "of plain EDI (worst)", "of the true frames (worst)"},

@@ -17,10 +17,10 @@ void printSetMembers(std::ostream& out, const SetEvaluation& evaluation, Measure
 /// each factor and over all; PSNR and SSIM.
 void printSetFactors(std::ostream& out, const SetEvaluation& evaluation);
 
-/// For each variant: what a front end keeps (tracks, their age, feature inliers), as shares of what
-/// it keeps of the better of plain EDI and the blurry frames, of plain EDI, and of the true frames:
-/// mean over the sequences and worst. A sequence counts where the other has kLeastToCompare or
-/// more.
+/// For each variant, and for the true frames themselves: what a front end keeps (tracks, their age,
+/// feature inliers), as shares of what it keeps of the better of plain EDI and the blurry frames,
+/// of plain EDI, and of the true frames: mean over the sequences and worst. A sequence counts where
+/// the other has kLeastToCompare or more.
 void printSetShares(std::ostream& out, const SetEvaluation& evaluation);
 constexpr double kLeastToCompare = 10.0;
 
