@@ -301,12 +301,12 @@ class OnlineCalibrationPair : public ::testing::Test {
     }
   }
 
-  /// Two frames, of which the second is darker by five OFF events, and five events of each pixel
-  /// between them.
-  CalibrationOutcome darken(bool on) {
+  /// Two frames, of which the second is darker by five OFF events, and five events of each pixel,
+  /// or of so many, between them.
+  CalibrationOutcome darken(bool on, std::size_t count = kSize.pixelCount()) {
     constexpr int kSteps = 5;
     for (int step = 0; step < kSteps; ++step) {
-      for (std::size_t i = 0; i < kSize.pixelCount(); ++i) {
+      for (std::size_t i = 0; i < count; ++i) {
         lists.append({static_cast<std::uint16_t>(i % kSize.width),
                       static_cast<std::uint16_t>(i / kSize.width),
                       kExposure_ns + step * kMs + static_cast<std::int64_t>(i), on});
@@ -344,6 +344,14 @@ TEST_F(OnlineCalibrationPair, NoiseAloneTeachesNothing) {
 TEST_F(OnlineCalibrationPair, LearnsFromEventsThatTellWhatTheFramesShow) {
   EXPECT_EQ(darken(false), CalibrationOutcome::kFitted);
   EXPECT_EQ(calibration.inForce().thresholds, kTrue);
+}
+
+TEST_F(OnlineCalibrationPair, LearnsFromFiftyPixels) {
+  EXPECT_EQ(darken(false, 50), CalibrationOutcome::kFitted);
+}
+
+TEST_F(OnlineCalibrationPair, LearnsNothingFromFewer) {
+  EXPECT_EQ(darken(false, 49), CalibrationOutcome::kTooFewPixels);
 }
 
 TEST_F(OnlineCalibrationPair, LearnsNothingFromEventsThatContradictTheFrames) {
