@@ -408,6 +408,20 @@ TEST_F(EventStreamTest, AJumpWithinTheHeldEventsIsWorkedOffToo) {
   checkThatNothingIsLost();
 }
 
+TEST_F(EventStreamTest, AJumpBackWithinTheHeldEventsWaitsForTheNextArrayAndIsRefuted) {
+  take({kStart});
+  const std::int64_t ahead = kStart + 100 * kSecond;
+  const std::int64_t stray = kStart + 60 * kSecond;
+  held = 4;
+  take({ahead, ahead + kMs, stray, stray + kMs});
+  held = 0;
+  take({ahead + 2 * kMs});
+  EXPECT_EQ(counters.event_time_jumps, 1u);
+  EXPECT_EQ(counters.events_glitched, 2u);
+  EXPECT_EQ(buffered(), 3u);
+  EXPECT_EQ(newest(), ahead + 2 * kMs);
+}
+
 TEST_F(EventStreamTest, AnArrayLostBehindHeldEventsMakesAHoleInTheNewEpoch) {
   take({kStart});
   const std::int64_t ahead = kStart + 100 * kSecond;
