@@ -47,7 +47,7 @@ constexpr double kFixedRidge = 1e12;
 /// Weight of what was learned before, each time a pair is added.
 constexpr double kForgetting = 0.9;
 constexpr double kLargestCorrection = 0.3;  ///< of a threshold, relative to the given one
-/// Of an edge, either way.
+/// Either way.
 constexpr double kLargestDelay_ns =
     limits::kEventDelay.range.highest * static_cast<double>(kNanosecondsPerMicrosecond);
 /// Pairs of frames determine a threshold no better than to a few per cent. Of a correction, nothing
@@ -60,11 +60,11 @@ constexpr double kSureCorrection = 0.1;
 /// wrong ones.
 constexpr double kDoubtfulImprovement = 1.08;
 constexpr double kSureImprovement = 1.16;
-/// ln 2: behind a first-order low-pass of time constant tau, events are late by tau in the mean,
-/// which is what the fit finds, but an edge has half of its height after tau ln 2. With this shift
-/// the latent image has it in its place (and least squared error). Events ahead of the light come
-/// from clocks that differ, and such a shift is taken whole.
-constexpr double kEdgeDelayPerMeanDelay = 0.693147180559945;
+/// Events tell of a change after it has reached a step, which the ramps of LevelModel make good in
+/// part. By so much the fit finds events late where pixels are not: 0.2 to 0.5 ms on simulated ones
+/// (method.md). Events ahead of the light come from clocks that differ, and such a shift is taken
+/// whole.
+constexpr double kStepLag_ms = 0.4;
 
 /// Smaller changes are ignored, so that most pairs of frames are integrated with equal values.
 constexpr double kNoticeableCorrection = 0.01;  ///< of a threshold, relative
@@ -96,18 +96,18 @@ double limited(double value, double lowest, double highest) {
   return std::min(std::max(value, lowest), highest);
 }
 
-/// Mean delay [ms] behind a first-order low-pass whose edges come late by \p edge_ns.
-double meanDelay(std::int64_t edge_ns) {
-  const double edge_ms =
-      static_cast<double>(edge_ns) / static_cast<double>(kNanosecondsPerMillisecond);
-  return edge_ms > 0.0 ? edge_ms / kEdgeDelayPerMeanDelay : edge_ms;
+/// What the fit finds where events are to be shifted by \p delay_ns [ms].
+double meanDelay(std::int64_t delay_ns) {
+  const double delay_ms =
+      static_cast<double>(delay_ns) / static_cast<double>(kNanosecondsPerMillisecond);
+  return delay_ms > 0.0 ? delay_ms + kStepLag_ms : delay_ms;
 }
 
 /// The other way round, within the limits.
-std::int64_t edgeDelay(double mean_ms) {
-  const double edge_ms = mean_ms > 0.0 ? mean_ms * kEdgeDelayPerMeanDelay : mean_ms;
+std::int64_t pixelDelay(double mean_ms) {
+  const double delay_ms = mean_ms > 0.0 ? std::max(0.0, mean_ms - kStepLag_ms) : mean_ms;
   return static_cast<std::int64_t>(
-      limited(edge_ms * static_cast<double>(kNanosecondsPerMillisecond), -kLargestDelay_ns,
+      limited(delay_ms * static_cast<double>(kNanosecondsPerMillisecond), -kLargestDelay_ns,
               kLargestDelay_ns));
 }
 
@@ -320,7 +320,7 @@ void OnlineCalibration::updateInForce() {
                          correctedThreshold(theta[1], given[1], believed)};
   }
   if (settings_.delay) {
-    wanted.event_delay_ns = edgeDelay(bestDelay(wanted.thresholds));
+    wanted.event_delay_ns = pixelDelay(bestDelay(wanted.thresholds));
   }
   const auto differs = [](double a, double b) {
     return std::abs(a - b) > kNoticeableCorrection * b;

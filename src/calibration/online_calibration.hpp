@@ -31,9 +31,9 @@
 /// Thresholds are changed only if they differ from the given ones by more than the error of such a
 /// fit (6 to 10 %), and if that makes the residuals smaller by a tenth or so than the given ones
 /// with their best delay leave them: where pixels differ much in their thresholds, or events are
-/// noise, the fit prefers other values than the true ones by less. The delay is multiplied by ln 2,
-/// the time at which an edge behind a low-pass reaches half of its height. An offset between the
-/// clocks is no low-pass: it belongs into `time_offset`.
+/// noise, the fit prefers other values than the true ones by less. Of the delay 0.4 ms are taken
+/// away: by so much events lag for telling steps, on pixels that do not lag. An offset between the
+/// clocks is no delay of pixels: it belongs into `time_offset`.
 ///
 /// Each pair is used until Settings::initial_fits were informative, then one in kRestFrames frames;
 /// also after kMaxUselessPairs consecutive pairs that were not. Of a pair of more than

@@ -209,15 +209,17 @@ TEST(OnlineCalibration, DoesNotBelieveItWherePixelsDifferByMore) {
   EXPECT_NEAR(found.thresholds.off / kTrue.off, 1.0, 0.01);
 }
 
-/// Of a delay, the part after which an edge behind a low-pass has half of its height.
-double edgeDelay(std::int64_t mean_ns) {
-  return static_cast<double>(mean_ns) * (mean_ns > 0 ? std::log(2.0) : 1.0);
+/// Of a delay, what is left without the lag of steps.
+double pixelDelay(std::int64_t mean_ns) {
+  constexpr double kStepLag_ns = 0.4 * kMs;
+  const auto mean = static_cast<double>(mean_ns);
+  return mean > 0.0 ? std::max(0.0, mean - kStepLag_ns) : mean;
 }
 
 TEST(OnlineCalibration, FindsTheDelayOfTheEvents) {
   for (const std::int64_t delay_ns : {-2 * kMs, 1 * kMs, 3 * kMs}) {
     const Calibration found = calibrated(RampScene(delay_ns), {kTrue}, {false, true});
-    EXPECT_NEAR(static_cast<double>(found.event_delay_ns), edgeDelay(delay_ns),
+    EXPECT_NEAR(static_cast<double>(found.event_delay_ns), pixelDelay(delay_ns),
                 0.6 * kMs);  // events of a ramp are 2 ms apart
     EXPECT_EQ(found.thresholds, kTrue);
   }
@@ -228,7 +230,7 @@ TEST(OnlineCalibration, FindsBothAtOnce) {
       calibrated(RampScene(2 * kMs), {{0.8 * kTrue.on, 0.85 * kTrue.off}}, {true, true});
   EXPECT_NEAR(found.thresholds.on / kTrue.on, 1.0, 0.05);
   EXPECT_NEAR(found.thresholds.off / kTrue.off, 1.0, 0.05);
-  EXPECT_NEAR(static_cast<double>(found.event_delay_ns), edgeDelay(2 * kMs), 0.5 * kMs);
+  EXPECT_NEAR(static_cast<double>(found.event_delay_ns), pixelDelay(2 * kMs), 0.5 * kMs);
 }
 
 TEST(OnlineCalibration, StartsFromTheGivenDelay) {
@@ -243,15 +245,15 @@ TEST(OnlineCalibration, StartsFromTheGivenDelay) {
 TEST(OnlineCalibration, FindsTheSameDelayFromWhereverItStarts) {
   for (const std::int64_t given_ns : {-1 * kMs, 1 * kMs, 4 * kMs}) {
     const Calibration found = calibrated(RampScene(3 * kMs), {kTrue, given_ns}, {false, true});
-    EXPECT_NEAR(static_cast<double>(found.event_delay_ns), edgeDelay(3 * kMs), 0.6 * kMs)
+    EXPECT_NEAR(static_cast<double>(found.event_delay_ns), pixelDelay(3 * kMs), 0.6 * kMs)
         << given_ns;
   }
 }
 
 TEST(OnlineCalibration, KeepsAGivenDelayThatNothingSpeaksAgainst) {
-  const std::int64_t given_ns = std::llround(edgeDelay(3 * kMs));
+  const std::int64_t given_ns = std::llround(pixelDelay(3 * kMs));
   const Calibration found = calibrated(RampScene(3 * kMs), {kTrue, given_ns}, {false, true}, 2);
-  EXPECT_NEAR(static_cast<double>(found.event_delay_ns), edgeDelay(3 * kMs), 0.4 * kMs);
+  EXPECT_NEAR(static_cast<double>(found.event_delay_ns), pixelDelay(3 * kMs), 0.4 * kMs);
 }
 
 TEST(OnlineCalibration, APartOfManyEventsIsEnough) {

@@ -129,8 +129,8 @@ class SlowCalibration {
     }
     if (settings_.delay) {
       const double delay_ms = bestDelay(wanted.thresholds);
-      const double edge_ms = delay_ms > 0.0 ? delay_ms * std::log(2.0) : delay_ms;
-      wanted.event_delay_ns = static_cast<std::int64_t>(std::clamp(edge_ms, -15.0, 15.0) * kMs);
+      const double shift_ms = delay_ms > 0.0 ? std::max(0.0, delay_ms - 0.4) : delay_ms;
+      wanted.event_delay_ns = static_cast<std::int64_t>(std::clamp(shift_ms, -15.0, 15.0) * kMs);
     }
     const auto differs = [](double a, double b) { return std::abs(a / b - 1.0) > 0.01; };
     if (differs(wanted.thresholds.on, in_force_.thresholds.on) ||
@@ -149,8 +149,8 @@ class SlowCalibration {
   }
   /// Mean delay [ms].
   double givenDelay() const {
-    const double edge_ms = static_cast<double>(given_.event_delay_ns) / kMs;
-    return edge_ms > 0.0 ? edge_ms / std::log(2.0) : edge_ms;
+    const double shift_ms = static_cast<double>(given_.event_delay_ns) / kMs;
+    return shift_ms > 0.0 ? shift_ms + 0.4 : shift_ms;
   }
   /// With the thresholds held.
   double bestDelay(const ContrastThresholds& thresholds) const {
