@@ -528,16 +528,23 @@ TEST_F(Live, FollowsTheDriversBiases) {
   set("OFFBn_coarse", 4);
   set("OFFBn_fine", 1);
   updates.publish(update);
-  const auto follows = [](const DiagnosticStatus& status) {
+  const auto follows = [](const DiagnosticStatus& status, const char* off) {
     return valueOf(status, "Contrast threshold ON").substr(0, 6) == "0.3819" &&
-           valueOf(status, "Contrast threshold OFF").substr(0, 6) == "0.2415";
+           valueOf(status, "Contrast threshold OFF").substr(0, 6) == off;
   };
-  EXPECT_TRUE(client_->waitForReport(follows))
-      << valueOf(client_->report(), "Contrast threshold ON");
+  EXPECT_TRUE(client_->waitForReport([&](const DiagnosticStatus& status) {
+    return follows(status, "0.2415");
+  })) << valueOf(client_->report(), "Contrast threshold ON");
   update.ints.back().value = 0;  // as the stock driver has it
   updates.publish(update);
-  EXPECT_TRUE(client_->waitForReport([&follows](const DiagnosticStatus& status) {
-    return contains(status.message, "/biased/bias_updates refused") && follows(status);
+  EXPECT_TRUE(client_->waitForReport([&](const DiagnosticStatus& status) {
+    return follows(status, "0.3819") &&
+           contains(valueOf(status, "Contrast from"), "OFF assumed to be as ON");
+  })) << valueOf(client_->report(), "Contrast from");
+  update.ints.at(1).value = 0;  // DiffBn without current: there is nothing to compare with
+  updates.publish(update);
+  EXPECT_TRUE(client_->waitForReport([&](const DiagnosticStatus& status) {
+    return contains(status.message, "/biased/bias_updates refused") && follows(status, "0.3819");
   })) << client_->report().message;
 }
 
