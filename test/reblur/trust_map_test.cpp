@@ -15,8 +15,8 @@
 namespace fast_edi {
 namespace {
 
-constexpr SensorSize kSize{97, 80};
-constexpr SensorSize kHalf{48, 40};
+constexpr SensorSize kSize{99, 83};  // odd; and cells of 4 x 4 half pixels do not divide it
+constexpr SensorSize kHalf{49, 41};
 constexpr float kNoise_dn = 1.5F;
 constexpr float kOffset_dn = 4.0F;
 constexpr float kContrast = 0.25F;
