@@ -93,10 +93,10 @@ void updateBiases(const std::uint8_t* data, std::size_t size) {
     update.ints.push_back(parameter);
   }
   try {
-    const auto thresholds = fast_edi::thresholdsAfterBiasUpdate(loaded, update);
-    if (thresholds) {
+    const auto found = fast_edi::thresholdsAfterBiasUpdate(loaded, update);
+    if (found) {
       fast_edi::DeblurParameters changed = loaded.deblur;
-      changed.thresholds = *thresholds;
+      changed.thresholds = found->thresholds;
       fast_edi::validate(changed);
     }
   } catch (const std::invalid_argument& error) {
