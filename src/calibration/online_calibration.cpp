@@ -61,9 +61,9 @@ constexpr double kSureCorrection = 0.1;
 constexpr double kDoubtfulImprovement = 1.08;
 constexpr double kSureImprovement = 1.16;
 /// Events tell of a change after it has reached a step, which the ramps of LevelModel make good in
-/// part. By so much the fit finds events late where pixels are not: 0.2 to 0.5 ms on simulated ones
-/// (method.md). Events ahead of the light come from clocks that differ, and such a shift is taken
-/// whole.
+/// part. By so much the fit finds events late where pixels are not; chosen on the simulated
+/// recordings of method.md and on the choosing set. Events ahead of the light come from clocks that
+/// differ, and such a shift is taken whole.
 constexpr double kStepLag_ms = 0.4;
 
 /// Smaller changes are ignored, so that most pairs of frames are integrated with equal values.

@@ -85,10 +85,9 @@ LoadedParameters ParametersInForce::withBiases(
         parameters.contrast_origin += ", OFF assumed to be as ON";
         parameters.warnings.push_back(
             "OffBn of the driver has no current (fine value 0), so that its biases say nothing "
-            "about the OFF "
-            "threshold: taken to be that of ON, " +
+            "about the OFF threshold: taken to be that of ON, " +
             numberText(update->thresholds.off) +
-            "; set OFFBn_fine above 0 in the driver, or give " + "contrast_threshold_off");
+            "; set OFFBn_fine above 0 in the driver, or give contrast_threshold_off");
       }
     }
   }

@@ -151,7 +151,7 @@ TEST(OpticalFlow, IsTheOneOfASlowReference) {
     OpticalFlow flow(size);
     flow.setTarget(to.data());
     const std::vector<Displacement>& found = flow.from(from.data());
-    const testing::SlowFlow::Flow expected = testing::SlowFlow::between(size, from, to);
+    const testing::SlowFlow::Flow expected = testing::SlowFlow::flow(size, from, to);
     ASSERT_EQ(found.size(), expected.values.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
       ASSERT_NEAR(static_cast<double>(found[i].x), expected.values[i].x, 1e-3)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fast_edi/base/types.hpp"
+#include "support/field.hpp"
 
 namespace fast_edi::testing {
 
@@ -16,46 +17,26 @@ class SlowFlow {
     double x = 0.0;
     double y = 0.0;
   };
-  template <typename Value>
-  struct Field {
-    SensorSize size;
-    std::vector<Value> values = std::vector<Value>(size.pixelCount());
-
-    /// Beyond the border the nearest pixel counts.
-    Value at(int x, int y) const {
-      return values[indexOf(std::clamp(x, 0, size.width - 1), std::clamp(y, 0, size.height - 1))];
-    }
-    Value& at(int x, int y) { return values[indexOf(x, y)]; }
-    bool holds(double x, double y) const {
-      return x >= 0.0 && y >= 0.0 && x <= size.width - 1 && y <= size.height - 1;
-    }
-
-   private:
-    std::size_t indexOf(int x, int y) const {
-      return static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) +
-             static_cast<std::size_t>(x);
-    }
-  };
-  using Image = Field<double>;
+  using Image = DoubleImage;
   using Flow = Field<Vector>;
 
   /// \return displacements of each pixel from one image to the other
-  static Flow between(SensorSize size, const std::vector<float>& from,
-                      const std::vector<float>& to) {
-    std::vector<Image> from_levels = {halved(imageOf(size, from))};
-    std::vector<Image> to_levels = {halved(imageOf(size, to))};
+  static Flow flow(SensorSize size, const std::vector<float>& from, const std::vector<float>& to) {
+    std::vector<Image> from_levels = {halved(imageOf(size, from), half(size))};
+    std::vector<Image> to_levels = {halved(imageOf(size, to), half(size))};
     while (from_levels.size() < 4 &&
            std::min(from_levels.back().size.width, from_levels.back().size.height) >= 16) {
-      from_levels.push_back(halved(from_levels.back()));
-      to_levels.push_back(halved(to_levels.back()));
+      const SensorSize coarser = half(from_levels.back().size);
+      from_levels.push_back(halved(from_levels.back(), coarser));
+      to_levels.push_back(halved(to_levels.back(), coarser));
     }
-    Flow flow{from_levels.back().size};
+    Flow found{from_levels.back().size};
     for (std::size_t level = from_levels.size(); level-- > 0;) {
-      refine(from_levels[level], to_levels[level], flow);
-      refine(from_levels[level], to_levels[level], flow);
-      flow = doubled(flow, level > 0 ? from_levels[level - 1].size : size);
+      refine(from_levels[level], to_levels[level], found);
+      refine(from_levels[level], to_levels[level], found);
+      found = doubled(found, level > 0 ? from_levels[level - 1].size : size);
     }
-    return flow;
+    return found;
   }
 
  private:
@@ -73,37 +54,7 @@ class SlowFlow {
   static constexpr int kRadius = 5;
   static constexpr double kLambda = 20.0;
 
-  template <typename Value, typename Function>
-  static Field<Value> fieldOf(SensorSize size, Function function) {
-    Field<Value> field{size};
-    for (int y = 0; y < size.height; ++y) {
-      for (int x = 0; x < size.width; ++x) field.at(x, y) = function(x, y);
-    }
-    return field;
-  }
-  static Image imageOf(SensorSize size, const std::vector<float>& plane) {
-    Image image{size};
-    std::copy(plane.begin(), plane.end(), image.values.begin());
-    return image;
-  }
-  static Image halved(const Image& fine) {
-    return fieldOf<double>({(fine.size.width + 1) / 2, (fine.size.height + 1) / 2},
-                           [&](int x, int y) {
-                             return (fine.at(2 * x, 2 * y) + fine.at(2 * x + 1, 2 * y) +
-                                     fine.at(2 * x, 2 * y + 1) + fine.at(2 * x + 1, 2 * y + 1)) /
-                                    4.0;
-                           });
-  }
-  static double between(const Image& image, double x, double y) {
-    x = std::clamp(x, 0.0, image.size.width - 1.0);
-    y = std::clamp(y, 0.0, image.size.height - 1.0);
-    const int left = static_cast<int>(x);
-    const int top = static_cast<int>(y);
-    const double fx = x - left;
-    const double fy = y - top;
-    return (1.0 - fy) * ((1.0 - fx) * image.at(left, top) + fx * image.at(left + 1, top)) +
-           fy * ((1.0 - fx) * image.at(left, top + 1) + fx * image.at(left + 1, top + 1));
-  }
+  static SensorSize half(SensorSize size) { return {(size.width + 1) / 2, (size.height + 1) / 2}; }
   /// Box means twice are one window: as many pairs of steps lead from one pixel to the other.
   static double weight(int from, int to, int length) {
     int ways = 0;
@@ -149,14 +100,14 @@ class SlowFlow {
   }
   static Flow doubled(const Flow& coarse, SensorSize size) {
     return fieldOf<Vector>(size, [&](int x, int y) {
-      const auto between = [&](auto component) {
+      const auto mixed = [&](auto component) {
         const auto along = [&](int row) {
           return 0.75 * component(coarse.at(x / 2, row)) +
                  0.25 * component(coarse.at(x % 2 == 0 ? x / 2 - 1 : x / 2 + 1, row));
         };
         return 2.0 * (0.75 * along(y / 2) + 0.25 * along(y % 2 == 0 ? y / 2 - 1 : y / 2 + 1));
       };
-      return Vector{between([](Vector u) { return u.x; }), between([](Vector u) { return u.y; })};
+      return Vector{mixed([](Vector u) { return u.x; }), mixed([](Vector u) { return u.y; })};
     });
   }
 };

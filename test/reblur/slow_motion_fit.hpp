@@ -11,6 +11,7 @@
 #include "fast_edi/base/types.hpp"
 #include "reblur/event_changes.hpp"
 #include "reblur/motion_equations.hpp"
+#include "support/field.hpp"
 
 namespace fast_edi::testing {
 
@@ -30,10 +31,11 @@ class SlowMotionFit {
       level.change[k] = finest.change[k];
     }
     while (levels_.size() < 3) {
-      level.log_image = halved(level.log_image);
-      level.count = halved(level.count);
+      const SensorSize coarser = half(level.log_image.size);
+      level.log_image = halved(level.log_image, coarser);
+      level.count = halved(level.count, coarser);
       for (Image& change : level.change) {
-        change = halved(change);
+        change = halved(change, coarser);
         // Of coarser levels, means of what is raised already.
         if (levels_.size() == 1) change = raised(change, level.count);
       }
@@ -76,21 +78,7 @@ class SlowMotionFit {
   }
 
  private:
-  struct Image {
-    SensorSize size;
-    std::vector<double> values = std::vector<double>(size.pixelCount());
-
-    double at(int x, int y) const {
-      return values[indexOf(std::clamp(x, 0, size.width - 1), std::clamp(y, 0, size.height - 1))];
-    }
-    double& at(int x, int y) { return values[indexOf(x, y)]; }
-
-   private:
-    std::size_t indexOf(int x, int y) const {
-      return static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) +
-             static_cast<std::size_t>(x);
-    }
-  };
+  using Image = DoubleImage;
   struct Pixel {
     int x;
     int y;
@@ -102,23 +90,9 @@ class SlowMotionFit {
     std::vector<Pixel> chosen;
   };
 
-  template <typename Value>
-  static Image imageOf(SensorSize size, const std::vector<Value>& values) {
-    Image image{size};
-    std::copy(values.begin(), values.end(), image.values.begin());
-    return image;
-  }
-  template <typename Function>
-  static Image map(SensorSize size, Function function) {
-    Image image{size};
-    for (int y = 0; y < size.height; ++y) {
-      for (int x = 0; x < size.width; ++x) image.at(x, y) = function(x, y);
-    }
-    return image;
-  }
   /// By (1, 2, 1) / 4 in both directions.
   static Image smoothed(const Image& image) {
-    return map(image.size, [&](int x, int y) {
+    return fieldOf<double>(image.size, [&](int x, int y) {
       double sum = 0.0;
       for (int v = -1; v <= 1; ++v) {
         for (int u = -1; u <= 1; ++u) sum += (2 - u * u) * (2 - v * v) * image.at(x + u, y + v);
@@ -126,15 +100,9 @@ class SlowMotionFit {
       return sum / 16.0;
     });
   }
-  static Image halved(const Image& image) {
-    return map({image.size.width / 2, image.size.height / 2}, [&](int x, int y) {
-      return (image.at(2 * x, 2 * y) + image.at(2 * x + 1, 2 * y) + image.at(2 * x, 2 * y + 1) +
-              image.at(2 * x + 1, 2 * y + 1)) /
-             4.0;
-    });
-  }
+  static SensorSize half(SensorSize size) { return {size.width / 2, size.height / 2}; }
   static Image raised(const Image& change, const Image& count) {
-    return map(change.size, [&](int x, int y) {
+    return fieldOf<double>(change.size, [&](int x, int y) {
       return change.at(x, y) * (1.0 + 0.25 / (1.0 + std::pow(count.at(x, y) / 5.0, 2)));
     });
   }
@@ -210,15 +178,6 @@ class SlowMotionFit {
     }
     equations.addPriors(fitted);
     return equations;
-  }
-
-  static double between(const Image& image, double x, double y) {
-    const int left = static_cast<int>(x);
-    const int top = static_cast<int>(y);
-    const double fx = x - left;
-    const double fy = y - top;
-    return (1.0 - fy) * ((1.0 - fx) * image.at(left, top) + fx * image.at(left + 1, top)) +
-           fy * ((1.0 - fx) * image.at(left, top + 1) + fx * image.at(left + 1, top + 1));
   }
 
   SensorSize size_;

@@ -11,6 +11,7 @@
 
 #include "fast_edi/events/event_counts.hpp"
 #include "support/event_generators.hpp"
+#include "support/field.hpp"
 
 namespace fast_edi {
 namespace {
@@ -28,24 +29,12 @@ std::size_t indexOf(int x, int y, int width) {
          static_cast<std::size_t>(x);
 }
 
-/// A plane of half the resolution; beyond its border its nearest pixel counts.
-struct Plane {
-  std::vector<double> values = std::vector<double>(kHalf.pixelCount());
-
-  double& at(int x, int y) { return values[indexOf(x, y, kHalf.width)]; }
-  double at(int x, int y) const {
-    return values[indexOf(std::clamp(x, 0, kHalf.width - 1), std::clamp(y, 0, kHalf.height - 1),
-                          kHalf.width)];
-  }
-};
+/// Of half the resolution.
+using Plane = testing::DoubleImage;
 
 template <typename Value>
 Plane planeOf(Value value) {
-  Plane plane;
-  for (int y = 0; y < kHalf.height; ++y) {
-    for (int x = 0; x < kHalf.width; ++x) plane.at(x, y) = value(x, y);
-  }
-  return plane;
+  return testing::fieldOf<double>(kHalf, value);
 }
 
 Plane boxMeans(const Plane& plane, int radius) {
@@ -176,8 +165,8 @@ class Reference {
     };
     const Plane before = squares(solved.residualBefore());
     const Plane after = squares(solved.residualAfter());
-    Plane does;
-    Plane could;
+    Plane does{kHalf};
+    Plane could{kHalf};
     compare(motion, changes, solved.solution(), does, could);
     const Plane near = boxMeans(does, 1);
     const Plane around = shareAround(does, could);
