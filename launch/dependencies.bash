@@ -163,10 +163,11 @@ fast_edi_source() {
 
 # How launch/demo and test/run configure build/: alike, so that neither builds again what the other has
 # built. Tests are built by the target `tests` alone. Without the packages that they need, CMake says
-# so and leaves them out.
+# so and leaves them out. Several sources of a library are compiled in one, in half the time.
 # shellcheck disable=SC2034
 FAST_EDI_OPTIONS=(
   -DCMAKE_BUILD_TYPE=Release -DCATKIN_ENABLE_TESTING=ON -DFAST_EDI_WARNINGS_AS_ERRORS=ON
+  -DCMAKE_UNITY_BUILD=ON
 )
 
 # fast_edi_make BUILD_FOLDER [TARGET ...]
