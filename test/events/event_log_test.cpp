@@ -83,6 +83,12 @@ TEST_F(EventLogTest, HasNoMoreChunksThanFullOnesNeedAndOneMore) {
   EXPECT_EQ(log_.overflowed(), 1u);
 }
 
+TEST_F(EventLogTest, ACountOneAboveThatOfFullChunksNeedsAChunkMore) {
+  log_.reset(kPixels, kChunk + 1);
+  for (std::int64_t i = 0; i < 5; ++i) add(kStart + i * (EventLog::kMaxDt_ns + 1));
+  EXPECT_EQ(log_.eventCount(), 3u);
+}
+
 TEST_F(EventLogTest, NumbersGoOnAfterAFlush) {
   fill(10);
   log_.flush();

@@ -223,6 +223,27 @@ TEST_F(EventStreamTest, ASecondPublisherMayLagBehind) {
   EXPECT_TRUE(stream.covers({kStart, newest()}));
 }
 
+TEST_F(EventStreamTest, AnArrayThatEndsWithinTheLimitIsKnownAgain) {
+  const std::vector<std::int64_t> across = {kStart, kStart + kBackLimit};
+  takeAs(1, across);
+  takeAs(2, {kStart + 2 * kBackLimit});
+  takeAs(9, across);
+  EXPECT_EQ(counters.event_arrays_repeated, 1u);
+  EXPECT_EQ(counters.events_repeated, 2u);
+  EXPECT_EQ(buffered(), 3u);
+}
+
+/// What lies around its record is not part of it.
+TEST_F(EventStreamTest, AnArrayOfOneEventIsKnownAgain) {
+  const Event far{1, 1, kStart + 3600 * kSecond, true};
+  const auto bytes = testing::toWire({{1, 1, 0, true}, {1, 1, kStart, true}, far});
+  const WireEvents one{bytes.data() + kWireEventBytes, 1};
+  stream.take(one, kSize, 1);
+  stream.take(one, kSize, 7);
+  EXPECT_EQ(counters.event_arrays_repeated, 1u);
+  EXPECT_EQ(buffered(), 1u);
+}
+
 TEST_F(EventStreamTest, AnArrayThatComesTwiceHidesNoLoss) {
   for (const std::uint32_t number : {1U, 2U, 3U, 5U, 6U}) {
     for (int twice = 0; twice < 2; ++twice) {

@@ -483,6 +483,21 @@ TEST_P(DoubleIntegralPaths, AgreeAfterAFlush) {
   EXPECT_EQ(closed.gain, integratedFromLog(kWindow, reference_ns).gain);
 }
 
+TEST_P(DoubleIntegralPaths, BeginWithTheFirstEventAfterAFlush) {
+  Lists lists(kPathSize, {});
+  DoubleIntegral integral(kPathSize, kUnequal, GetParam().weighting, GetParam().level);
+  const std::int64_t reference_ns = kWindow.at(ExposureInstant::kMid);
+  lists.append(wireView(wire_));
+  lists.flush();
+  integral.predictWindow(kWindow, reference_ns);
+  integral.accumulate(lists);  // the newest event is of before
+  lists.append(wireView(wire_));
+  integral.accumulate(lists);
+  const Closed closed = closeWith(integral, lists, kWindow, reference_ns);
+  EXPECT_EQ(closed.report.kind, IntegrationKind::kPredicted);
+  EXPECT_EQ(closed.gain, integratedFromLog(kWindow, reference_ns).gain);
+}
+
 TEST_P(DoubleIntegralPaths, AgreeAfterAnOverflow) {
   // Full long before the window ends: what is left is what counts, however it was accumulated.
   PixelEventLists::Limits limits;

@@ -187,8 +187,10 @@ class ResidualSolverTest : public ::testing::Test {
       const std::size_t row = i / kWidth;
       const auto y = static_cast<float>(row);
       const float edge = x > 18.0F ? 60.0F : 0.0F;
-      latent_.push_back(90.0F + edge);
-      blurry_.push_back(90.0F + edge + 9.0F * std::sin(0.6F * x + 0.3F * y) + noise(random));
+      const float slope = 0.4F * y;  // no row is the one above
+      latent_.push_back(90.0F + edge + slope);
+      blurry_.push_back(90.0F + edge + slope + 9.0F * std::sin(0.6F * x + 0.3F * y) +
+                        noise(random));
       counts_.push_back(std::abs(x - 18.0F) < 4.0F ? 3.0F : 0.0F);
     }
     blurry_[5 * kWidth + 30] = 255.0F;
