@@ -128,6 +128,26 @@ TEST(PairEvidence, SumsAreThoseOfTheDefinition) {
   }
 }
 
+TEST(PairEvidence, BelongsAtABorderToWhatBegins) {
+  constexpr SensorSize kSize{5, 1};
+  std::vector<Event> events;
+  for (const std::int64_t border_ns :
+       {kPair.first.start_ns, kPair.first.end_ns, kPair.second.start_ns, kPair.second.end_ns}) {
+    const auto x = static_cast<std::uint16_t>(events.size());
+    events.push_back({x, 0, border_ns, true});
+  }
+  PairEvidence evidence(kSize);
+  evidence.gather(*listsOf(kSize, events), kPair, kThresholds, kStaircase, {});
+  const std::vector<Reference> expected = reference(kSize, events, kStaircase);
+  for (std::size_t x = 0; x < expected.size(); ++x) {
+    expectEqual(evidence.row(0)[x], expected[x], std::to_string(x));
+  }
+  EXPECT_NE(evidence.row(0)[0].slope, 0.0F);
+  EXPECT_EQ(evidence.row(0)[1].slope, 0.0F);
+  EXPECT_NE(evidence.row(0)[2].slope, 0.0F);
+  EXPECT_EQ(evidence.row(0)[3].count, 0.0F);
+}
+
 TEST(PairEvidence, RowsOfASampleHaveTheSameSumsAsAmongAll) {
   for (const SensorSize size : {SensorSize{37, 23}, SensorSize{346, 260}, SensorSize{3000, 2000},
                                 SensorSize{1, 30000}, SensorSize{30000, 8}}) {

@@ -384,6 +384,13 @@ TEST_F(ResponseFile, IsReadWithComments) {
   EXPECT_NEAR(response.exposure(100.0) / response.exposure(50.0), 105.0 / 55.0, 1e-4);
 }
 
+TEST_F(ResponseFile, MayHaveOneMegabyteAndNoMore) {
+  std::string text = asText(sensorLikeTable());
+  text.append((std::size_t{1} << 20) - text.size(), ' ');
+  EXPECT_NO_THROW(CameraResponse::fromFile(write(text)));
+  EXPECT_THAT(messageFor(text + " "), HasSubstr(path_ + ": larger than 1 MB"));
+}
+
 TEST_F(ResponseFile, NamesFileLineAndRule) {
   EXPECT_THAT(messageFor("# response\n0.5 one 2"), HasSubstr(path_ + ":2: 'one' is not a number"));
   EXPECT_THAT(messageFor("0.5\n0.4"), HasSubstr(path_ + ":2: value 1 of the camera response"));
