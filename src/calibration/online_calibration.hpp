@@ -42,6 +42,10 @@
 /// Settings::settled_events on: many pairs are in the sums by then. Before, a part of the rows
 /// gives thresholds and delays that cost up to 1 dB in single frames.
 ///
+/// A delay may begin or end: a driver is started anew, events no longer wait in a queue. A pair
+/// that tells a delay 2 ms from that of the pairs before it, which leaves clearly larger residuals,
+/// makes these forgotten at once.
+///
 /// A pair whose frames do not change as its events say (cosine below 0.8 over the informative
 /// pixels) teaches nothing: its events are wrong, not the parameters.
 ///
@@ -67,7 +71,7 @@ namespace fast_edi {
 /// What is learned.
 struct Calibration {
   ContrastThresholds thresholds;
-  /// By this much the events of an edge come after its light, half of them earlier. [ns]
+  /// By this much the events of an edge come after its light, in the mean. [ns]
   std::int64_t event_delay_ns = 0;
 };
 
@@ -133,6 +137,22 @@ class OnlineCalibration {
     Eigen::Vector3d vector = Eigen::Vector3d::Zero();
     double squares = 0.0;
 
+    struct Tie {
+      double delay_ms = 0.0;
+      double weight = 0.0;
+    };
+    /// The mean delay [ms] that these thresholds leave least residuals with; NaN if nothing tells.
+    double delay(const ContrastThresholds& thresholds, const Tie& tie) const {
+      return (vector[2] - matrix(2, 0) * thresholds.on - matrix(2, 1) * thresholds.off +
+              tie.weight * tie.delay_ms) /
+             (matrix(2, 2) + tie.weight);
+    }
+    NormalEquations times(double weight) const {
+      return {weight * matrix, weight * vector, weight * squares};
+    }
+    NormalEquations plus(const NormalEquations& other) const {
+      return {matrix + other.matrix, vector + other.vector, squares + other.squares};
+    }
     /// Weighted sum of squares of the residuals that \p theta leaves.
     double remaining(const Eigen::Vector3d& theta) const {
       return squares - 2.0 * theta.dot(vector) + theta.dot(matrix * theta);
@@ -167,7 +187,8 @@ class OnlineCalibration {
   RowSample nextRows(std::uint64_t events);
   std::size_t fit(const RowSample& rows, NormalEquations& equations, Agreement& agreement) const;
   std::size_t fitRow(int y, NormalEquations& equations, Agreement& agreement) const;
-  double bestDelay(const ContrastThresholds& thresholds) const;
+  double learnedDelay(const ContrastThresholds& thresholds) const;
+  bool isOutdatedBy(const NormalEquations& pair) const;
   void updateInForce();
 
   SensorSize size_;

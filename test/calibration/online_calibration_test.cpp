@@ -15,7 +15,7 @@ namespace fast_edi {
 namespace {
 
 constexpr std::int64_t kMs = kNanosecondsPerMillisecond;
-constexpr SensorSize kSize{40, 30};
+constexpr SensorSize kSize{56, 42};
 constexpr std::int64_t kExposure_ns = 20 * kMs;
 constexpr std::int64_t kPeriod_ns = 40 * kMs;
 constexpr ContrastThresholds kTrue{0.25, 0.2};
@@ -34,7 +34,11 @@ class RampScene {
   };
 
   explicit RampScene(std::int64_t delay_ns) : RampScene(delay_ns, Thresholds()) {}
-  RampScene(std::int64_t delay_ns, const Thresholds& thresholds) : thresholds_(thresholds) {
+  RampScene(std::int64_t delay_ns, const Thresholds& thresholds)
+      : RampScene(delay_ns, delay_ns, thresholds) {}
+  /// \param later_delay_ns of the second half
+  RampScene(std::int64_t delay_ns, std::int64_t later_delay_ns, const Thresholds& thresholds)
+      : thresholds_(thresholds) {
     for (int y = 0; y < kSize.height; ++y) {
       for (int x = 0; x < kSize.width; ++x) {
         const bool up = (x + y) % 2 == 0;
@@ -43,8 +47,9 @@ class RampScene {
           const bool rises = up == (ramp % 2 == 0);
           const std::int64_t start_ns = rampStart(x, y, ramp);
           for (int k = 1; k <= steps(rises); ++k) {
-            events_.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                               start_ns + k * kStep_ns + delay_ns, rises});
+            events_.push_back(
+                {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                 start_ns + k * kStep_ns + (ramp < kRamps / 2 ? delay_ns : later_delay_ns), rises});
           }
         }
       }
@@ -152,6 +157,7 @@ TEST(OnlineCalibration, LearnsWhatASlowReferenceLearns) {
     RampScene::Thresholds thresholds;
     Calibration given;
     OnlineCalibration::Settings settings;
+    std::int64_t further_delay_ns = 0;  ///< in the second half
   };
   for (const Case& one :
        {Case{0, {1.0, 0.3, true}, {{0.8 * kTrue.on, 1.2 * kTrue.off}}, {true, false}},
@@ -159,9 +165,11 @@ TEST(OnlineCalibration, LearnsWhatASlowReferenceLearns) {
         {0, {0.89, 0.25, true}, {kTrue}, {true, true}},
         {2 * kMs, {1.0, 0.1, true}, {{0.8 * kTrue.on, 0.85 * kTrue.off}, kMs}, {true, true}},
         {-2 * kMs, {1.0, 0.2, false}, {kTrue, -kMs}, {false, true}},
-        {0, {1.0, 0.0, true}, {{2.0 * kTrue.on, 0.6 * kTrue.off}, -kMs}, {true, false}}}) {
+        {0, {1.0, 0.0, true}, {{2.0 * kTrue.on, 0.6 * kTrue.off}, -kMs}, {true, false}},
+        {4 * kMs, {1.0, 0.1, false}, {kTrue}, {true, true}, -4 * kMs},
+        {0, {1.0, 0.2, true}, {kTrue}, {false, true}, 4 * kMs}}) {
     testing::SlowCalibration slow(kSize, one.given, one.settings);
-    const RampScene scene(one.delay_ns, one.thresholds);
+    const RampScene scene(one.delay_ns, one.delay_ns + one.further_delay_ns, one.thresholds);
     calibrated(scene, one.given, one.settings, 10,
                [&](const OnlineCalibration& found, const OnlineCalibration::Frame& frame) {
                  slow.addFrame(frame, scene.lists());
@@ -247,6 +255,18 @@ TEST(OnlineCalibration, FindsTheSameDelayFromWhereverItStarts) {
     const Calibration found = calibrated(RampScene(3 * kMs), {kTrue, given_ns}, {false, true});
     EXPECT_NEAR(static_cast<double>(found.event_delay_ns), pixelDelay(3 * kMs), 0.6 * kMs)
         << given_ns;
+  }
+}
+
+/// As where events waited in a queue that is empty again.
+TEST(OnlineCalibration, FollowsADelayThatBeginsOrEnds) {
+  for (const std::int64_t further_ns : {-4 * kMs, 4 * kMs}) {
+    const std::int64_t first_ns = further_ns < 0 ? 4 * kMs : 0;
+    const RampScene scene(first_ns, first_ns + further_ns, {1.0, 0.1});
+    const Calibration found = calibrated(scene, {kTrue}, {false, true});
+    EXPECT_NEAR(static_cast<double>(found.event_delay_ns), pixelDelay(first_ns + further_ns),
+                0.6 * kMs)
+        << further_ns;
   }
 }
 

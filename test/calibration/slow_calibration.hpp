@@ -102,11 +102,29 @@ class SlowCalibration {
       ++pixels;
     }
     if (pixels < 50 || !(both >= 0.8 * std::sqrt(frames * events))) return;
-    learned_.matrix = 0.9 * learned_.matrix + pair.matrix;
-    learned_.vector = 0.9 * learned_.vector + pair.vector;
-    learned_.squares = 0.9 * learned_.squares + pair.squares;
+    const double share = learned_.matrix(2, 2) / pair.matrix(2, 2);
+    const bool outdated =
+        fits_ > 0 && settings_.delay && pair.matrix(2, 2) >= 0.1 && isOutdatedBy(pair, 0.1 * share);
+    const double forgetting = outdated ? 0.0 : 0.9;
+    learned_.matrix = forgetting * learned_.matrix + pair.matrix;
+    learned_.vector = forgetting * learned_.vector + pair.vector;
+    learned_.squares = forgetting * learned_.squares + pair.squares;
     ++fits_;
     update();
+  }
+
+  /// \param tie how much the pair's own delay is held at that of before, in units of its weight
+  bool isOutdatedBy(const Sums& pair, double tie) const {
+    const ContrastThresholds& now = in_force_.thresholds;
+    const double before = bestOf(learned_, now);
+    const double own = (bestOf(pair, now) + tie * before) / (1.0 + tie);
+    return std::abs(own - before) > 2.0 && std::sqrt(pair.remaining({now.on, now.off, before}) /
+                                                     pair.remaining({now.on, now.off, own})) > 1.12;
+  }
+  static double bestOf(const Sums& sums, const ContrastThresholds& thresholds) {
+    return (sums.vector[2] - sums.matrix(2, 0) * thresholds.on -
+            sums.matrix(2, 1) * thresholds.off) /
+           sums.matrix(2, 2);
   }
 
   void update() {
