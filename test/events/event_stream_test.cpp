@@ -429,6 +429,23 @@ TEST_F(EventStreamTest, AJumpWithinTheHeldEventsIsWorkedOffToo) {
   checkThatNothingIsLost();
 }
 
+/// However many there are: what is left then is dropped, and the array itself waits.
+TEST_F(EventStreamTest, TwoJumpsWithinTheHeldEventsAreWorkedOffByOneArray) {
+  take({kStart});
+  const std::int64_t ahead = kStart + 100 * kSecond;
+  held = 3;
+  take({ahead, ahead + 20 * kSecond, ahead + 40 * kSecond});
+  held = 1;
+  take({ahead + 40 * kSecond + 1});
+  EXPECT_EQ(counters.event_time_jumps, 2u);
+  EXPECT_EQ(counters.events_glitched, 1u);
+  EXPECT_EQ(newest(), ahead + 20 * kSecond);
+  held = 0;
+  take({ahead + 40 * kSecond + 2});
+  EXPECT_EQ(counters.event_time_jumps, 3u);
+  EXPECT_EQ(newest(), ahead + 40 * kSecond + 2);
+}
+
 TEST_F(EventStreamTest, AJumpBackWithinTheHeldEventsWaitsForTheNextArrayAndIsRefuted) {
   take({kStart});
   const std::int64_t ahead = kStart + 100 * kSecond;

@@ -130,8 +130,8 @@ TEST(OpticalFlow, OfMirroredImagesIsMirroredUpToTheBorder) {
   }
 }
 
-/// From the smallest of one level to one of all four, of odd and even sides, with displacements
-/// that leave the image at all borders.
+/// From the smallest of one level to one of all four, and one that would have a fifth, of odd and
+/// even sides, with displacements that leave the image at all borders.
 TEST(OpticalFlow, IsTheOneOfASlowReference) {
   for (const SensorSize size : {SensorSize{20, 24},
                                 {31, 30},
@@ -140,7 +140,8 @@ TEST(OpticalFlow, IsTheOneOfASlowReference) {
                                 {63, 62},
                                 {64, 65},
                                 {127, 125},
-                                {128, 131}}) {
+                                {128, 131},
+                                {250, 243}}) {
     const Mapping turning = [size](int x, int y) {
       const auto dx = static_cast<float>(x) - 0.4F * static_cast<float>(size.width);
       const auto dy = static_cast<float>(y) - 0.6F * static_cast<float>(size.height);

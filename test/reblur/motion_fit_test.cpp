@@ -77,7 +77,9 @@ class MotionFitTest : public ::testing::Test {
 
   /// The same once more, of what was changed since.
   FittedMotion fit() const {
-    return MotionFit(kPlaneSize).fit(log_image_.data(), changes_, mean_counts_.data(), contrast_);
+    std::vector<float> image = log_image_;
+    image.insert(image.end(), kPlaneSize.width, 1e9F);  // no part of it
+    return MotionFit(kPlaneSize).fit(image.data(), changes_, mean_counts_.data(), contrast_);
   }
 
   /// To the image.
