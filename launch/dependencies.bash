@@ -32,7 +32,7 @@ FAST_EDI_DEBIAN_TEST=(
   clang
   python3-pytest python3-pil python3-matplotlib mypy
   python3-venv python3-rospy
-  xvfb xdotool
+  xvfb xdotool locales
 )
 # Before Debian 12 this comes with clang.
 FAST_EDI_DEBIAN_12_TEST=(libclang-rt-dev)
@@ -58,7 +58,7 @@ FAST_EDI_NOETIC_TEST=(
   clang
   python3-pytest python3-pil python3-matplotlib mypy
   python3-venv ros-noetic-rospy
-  xvfb xdotool
+  xvfb xdotool locales
 )
 
 # fast_edi_heed_interrupts SCRIPT [ARGUMENT...]: restarts a script where SIGINT is ignored, as it is
