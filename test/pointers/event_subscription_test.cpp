@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <dvs_msgs/EventArray.h>
@@ -135,6 +136,35 @@ TEST_F(EventPointers, AreTakenFromThePublisherThatStartsLater) {
   ASSERT_TRUE(waitUntil([this] { return received_.size() >= 3; }));
   EXPECT_EQ(received_[2].records, recordsOf(*makeArray(20)));
   EXPECT_EQ(dvs_msgs::serialisations, 1) << "the second array was serialised";
+}
+
+// A queue of several threads may deliver the next array before the delivery of the last one ends.
+TEST_F(EventPointers, TwoThatAreDeliveredAtOnceHaveMemoryOfTheirOwn) {
+  const ros::Publisher publisher = nh_.advertise<dvs_msgs::EventArray>("at_once/events", kQueue);
+  const EventSubscription::Handler take = handler();
+  bool is_first = true;
+  EventSubscription subscription(
+      nh_, "at_once/events", kLimits,
+      [&](const WireEvents& events, SensorSize size, std::uint32_t sequence,
+          std::int64_t arrived_ns) {
+        if (std::exchange(is_first, false)) {
+          std::thread([] { ros::getGlobalCallbackQueue()->callOne(); }).join();
+        }
+        take(events, size, sequence, arrived_ns);
+      },
+      onLoss(), [] {});
+  subscription.update();
+  ASSERT_TRUE(waitUntil([&] { return publisher.getNumSubscribers() == 1; }));
+  const auto first = makeArray(7);
+  const auto second = makeArray(20);
+  publisher.publish(first);
+  publisher.publish(second);
+  ASSERT_TRUE(test::waitUntil([this] {
+    ros::getGlobalCallbackQueue()->callOne();
+    return received_.size() == 2;
+  }));
+  EXPECT_EQ(received_[0].records, recordsOf(*second)) << "it was delivered within the other one";
+  EXPECT_EQ(received_[1].records, recordsOf(*first));
 }
 
 /// The parameter: how many threads call the callbacks.
