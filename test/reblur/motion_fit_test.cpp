@@ -174,7 +174,7 @@ TEST_F(MotionFitTest, IsTheOneOfASlowReference) {
   fit(testing::movingPlane(MotionKind::kShake, 2.0));  // the smallest share that is used
   ASSERT_LT(fitted_.event_share, 0.8F);
   expectTheSlowFit();
-  addNoise(0.15F);  // which makes it smaller
+  addNoise(0.3F);  // which makes it smaller
   ASSERT_EQ(fit().event_share, 1.0F);
   expectTheSlowFit();
   lost_one_of_ = 5;
