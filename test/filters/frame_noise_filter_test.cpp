@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "fast_edi/filters/non_local_means.hpp"
+
 namespace fast_edi {
 namespace {
 
@@ -82,6 +84,36 @@ TEST(FrameNoiseFilter, KeepsAFractionOfWhatItTakesOut) {
   EXPECT_EQ(filtered(1.0), levels);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     EXPECT_NEAR(half[i], 0.5 * (clean[i] + levels[i]), 1.01) << i;
+  }
+}
+
+TEST(FrameNoiseFilter, IsNonLocalMeansWithTheVarianceOfTheHeader) {
+  for (const PixelFormat format : {PixelFormat::kMono8, PixelFormat::kMono16}) {
+    const double dn = bytesPerPixel(format) == 2 ? kDn16PerDn8 : 1.0;
+    Image image(format);
+    std::mt19937 random(19);
+    std::normal_distribution<double> read(100.0 * dn, 3.0 * dn);
+    std::vector<float> levels(kSize.pixelCount());
+    std::vector<float> counts(levels.size());
+    std::vector<float> variances(levels.size());
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      const auto level = static_cast<std::uint16_t>(std::lround(read(random)));
+      std::memcpy(&image.bytes[i * static_cast<std::size_t>(bytesPerPixel(format))], &level,
+                  static_cast<std::size_t>(bytesPerPixel(format)));  // little-endian
+      levels[i] = static_cast<float>(level);
+      counts[i] = 0.5F * static_cast<float>(i % 5);
+      const double n = counts[i];
+      variances[i] =
+          static_cast<float>(std::pow(1.5 * kNoise_dn * dn, 2) +
+                             std::pow(0.02 * levels[i], 2) * std::min(1.0, n) * (1.0 + n / 3.0));
+    }
+    std::vector<float> expected(levels.size());
+    NonLocalMeans(kSize, {1, 1.5F, 1}).apply(levels.data(), variances.data(), expected.data());
+    FrameNoiseFilter filter(kSize, format, kKept);
+    filter.apply(image.view(), kNoise_dn, counts.data(), image.mutableView());
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      EXPECT_NEAR(filter.clean()[i], expected[i], 1e-3 * dn) << i;
+    }
   }
 }
 
