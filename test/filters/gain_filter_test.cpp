@@ -264,6 +264,12 @@ TEST(GainFilter, RefusesSettingsOutOfRange) {
   settings = {};
   settings.restore = 1.1F;
   EXPECT_THROW(GainFilter(kSize, settings), std::invalid_argument);
+  settings.restore = -0.1F;
+  EXPECT_THROW(GainFilter(kSize, settings), std::invalid_argument);
+  for (const float bound : {0.0F, 1.0F}) {
+    settings.restore = bound;
+    EXPECT_NO_THROW(GainFilter(kSize, settings)) << bound;
+  }
   settings = {};
   settings.spatial_sigma_px = -1.0F;
   EXPECT_THROW(GainFilter(kSize, settings), std::invalid_argument);
