@@ -337,6 +337,16 @@ std::string messageOf(const Call& call) {
   return "nothing was thrown";
 }
 
+TEST(CameraResponse, MaySpanSixtyNaturalLogUnitsAndNoMore) {
+  std::vector<double> table(256);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    table[i] = 60.0 * static_cast<double>(i) / 255.0;
+  }
+  EXPECT_NO_THROW(CameraResponse::fromTable(table));
+  table.back() = std::nextafter(60.0, 61.0);
+  EXPECT_THROW(CameraResponse::fromTable(table), std::invalid_argument);
+}
+
 TEST(CameraResponse, NamesTheFirstTableValueThatBreaksTheRule) {
   std::vector<double> table = sensorLikeTable();
   table[17] = table[16];
