@@ -242,6 +242,32 @@ TEST_F(LatentVideoTest, BridgesNoHoleInTheEvents) {
   EXPECT_EQ(sink.latent_images.size(), 10u);
 }
 
+/// Exposures from 10 to 30 and 50 to 70 ms are of events 8 ms later; so are the halves of the gap
+/// between them.
+TEST_F(LatentVideoTest, LooksForHolesBehindAnExposureInTheTimeOfTheEvents) {
+  parameters.time_offset_ns = 8 * kMs;
+  events(0, 20);
+  events(20, 40);
+  sequence += 5;
+  events(46, 100);
+  frame(20);
+  frame(60);
+  EXPECT_THAT(latentStamps_ms(),
+              ElementsAre(12.5, 17.5, 22.5, 27.5, 42.5, 47.5, 52.5, 57.5, 62.5, 67.5));
+}
+
+TEST_F(LatentVideoTest, LooksForHolesBeforeAnExposureInTheTimeOfTheEvents) {
+  parameters.time_offset_ns = 8 * kMs;
+  events(0, 20);
+  events(20, 50);
+  sequence += 5;
+  events(56, 100);
+  frame(20);
+  frame(60);
+  EXPECT_THAT(latentStamps_ms(),
+              ElementsAre(12.5, 17.5, 22.5, 27.5, 32.5, 37.5, 52.5, 57.5, 62.5, 67.5));
+}
+
 TEST_F(LatentVideoTest, BridgesNoLongGap) {
   events(0, 1200);
   frame(20);
