@@ -193,11 +193,7 @@ CalibrationOutcome OnlineCalibration::learnFromPair(const Frame& frame,
   if (!(agreement.cosine() >= kLeastAgreement)) {
     return CalibrationOutcome::kContradiction;
   }
-  if (fits_ == 0 || isOutdatedBy(pair)) {
-    learned_ = pair;
-  } else {
-    learned_ = learned_.times(kForgetting).plus(pair);
-  }
+  learned_ = isOutdatedBy(pair) ? pair : learned_.times(kForgetting).plus(pair);
   updateInForce();
   ++fits_;
   return CalibrationOutcome::kFitted;
@@ -310,7 +306,7 @@ bool OnlineCalibration::isOutdatedBy(const NormalEquations& pair) const {
     return false;
   }
   const ContrastThresholds& thresholds = in_force_.thresholds;
-  const double before_ms = learned_.delay(thresholds, {});
+  const double before_ms = learned_.delay(thresholds, {});  // NaN before the first pair
   // A pair that tells less than others do stays near to them.
   const double own_ms =
       pair.delay(thresholds, {before_ms, (1.0 - kForgetting) * learned_.matrix(2, 2)});
