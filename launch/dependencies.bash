@@ -195,3 +195,17 @@ fast_edi_configure() {
   shift
   cmake -S "$(dirname "${BASH_SOURCE[0]}")/.." -B "$build" "$@"
 }
+
+# fast_edi_build_package BUILD_FOLDER: builds what the demo needs. What test/run has built there counts,
+# and the other way round.
+fast_edi_build_package() {
+  local log=$1/build.log
+  [ -f "$1/Makefile" ] || fast_edi_configure "$1" "${FAST_EDI_OPTIONS[@]}" >/dev/null
+  if ! fast_edi_make "$1" 2>&1 | tee "$log"; then
+    # A compiler that warns where those that the package is tried with do not.
+    grep -q -e '-Werror' "$log" || return 1
+    echo "== building again, without taking warnings for errors"
+    fast_edi_configure "$1" -DFAST_EDI_WARNINGS_AS_ERRORS=OFF >/dev/null
+    fast_edi_make "$1"
+  fi
+}
