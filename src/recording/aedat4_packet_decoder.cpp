@@ -102,7 +102,7 @@ bool Aedat4PacketDecoder::giveEvents(RecordingItem& item) {
 }
 
 bool Aedat4PacketDecoder::giveSomeEvents(RecordingItem& item) {
-  const std::size_t end = std::min(elements_.count, done_ + kMaxItemEvents);
+  const std::size_t end = std::min(elements_.count, done_ + max_item_events_);
   events_.resize(std::max(events_.size(), end - done_));
   std::size_t count = 0;
   const std::uint8_t* element = elements_.data + done_ * kEventBytes;

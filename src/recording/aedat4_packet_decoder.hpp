@@ -22,9 +22,11 @@ class Aedat4PacketDecoder {
   /// Both must outlive this.
   /// \param streams of the recording
   /// \param damage takes notes
+  /// \param max_item_events more events of a packet come in several items
   Aedat4PacketDecoder(const std::vector<RecordedStream>& streams,
-                      std::vector<RecordingDamage>& damage)
-      : streams_(streams), damage_(damage) {}
+                      std::vector<RecordingDamage>& damage,
+                      std::size_t max_item_events = kMaxItemEvents)
+      : streams_(streams), damage_(damage), max_item_events_(max_item_events) {}
 
   /// Begins a packet.
   /// \param bytes decompressed, which may be cut; must live until next() has returned false
@@ -48,6 +50,7 @@ class Aedat4PacketDecoder {
 
   const std::vector<RecordedStream>& streams_;
   std::vector<RecordingDamage>& damage_;
+  std::size_t max_item_events_;
   std::size_t stream_ = 0;
   std::uint64_t packet_offset_ = 0;
   std::optional<FlatTable> table_;

@@ -10,6 +10,12 @@
 #include "stream/stream_error.hpp"
 
 namespace fast_edi {
+namespace {
+
+/// Each item becomes a message, and subscribers' queues count messages.
+constexpr std::size_t kMaxMessageEvents = 100'000;
+
+}  // namespace
 
 const char* toString(StreamKind kind) {
   switch (kind) {
@@ -28,7 +34,7 @@ const char* toString(StreamKind kind) {
 }
 
 StreamDecoder::StreamDecoder(FlatBytes io_header, StreamKind expected)
-    : decoder_(streams_, damage_) {
+    : decoder_(streams_, damage_, kMaxMessageEvents) {
   Aedat4Header header;
   const std::string fault = decodeAedat4Header(io_header, header);
   if (!fault.empty()) {

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <array>
 #include <cstdint>
 #include <variant>
 #include <vector>
@@ -10,24 +9,18 @@
 #include "recording/aedat4_header.hpp"
 #include "recording/aedat4_stamp.hpp"
 #include "recording/flatbuffer_writer.hpp"
+#include "recording/stored_events.hpp"
 
 namespace fast_edi {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::packetOf;
+using testing::StoredEvent;
 
 constexpr std::uint64_t kOffset = 1234;
 constexpr std::size_t kEventStream = 0;
 constexpr std::size_t kImuStream = 1;
-
-/// An event as it lies in a packet.
-struct StoredEvent {
-  std::int64_t t_us = 0;
-  std::int16_t x = 0;
-  std::int16_t y = 0;
-  std::uint8_t on = 0;
-  std::array<std::uint8_t, 3> padding = {};
-};
 
 StoredEvent eventAt(std::int64_t t_us) {
   StoredEvent event;
@@ -36,15 +29,6 @@ StoredEvent eventAt(std::int64_t t_us) {
   event.y = -1;
   event.on = 1;
   return event;
-}
-
-std::vector<std::uint8_t> packetOf(const std::vector<StoredEvent>& events) {
-  FlatBufferWriter buffer(kAedat4Events);
-  std::vector<FlatBufferWriter::Reference> places;
-  buffer.setRoot(buffer.table({FlatBufferWriter::reference(0)}, places));
-  buffer.vector(places[0], events.data(), events.size(), sizeof(StoredEvent),
-                alignof(std::int64_t));
-  return buffer.finish();
 }
 
 /// One IMU sample of a time alone.
@@ -91,6 +75,15 @@ TEST_F(Aedat4PacketDecoderOf, EventsLeavesOutThoseWithoutAStamp) {
   ASSERT_EQ(damage_.size(), 1U);
   EXPECT_EQ(damage_[0].offset, kOffset);
   EXPECT_THAT(damage_[0].what, HasSubstr("2 events with times"));
+  EXPECT_FALSE(decoder_.next(item_));
+}
+
+TEST_F(Aedat4PacketDecoderOf, MoreEventsThanAnItemTakesComeInSeveral) {
+  open(packetOf(std::vector<StoredEvent>(kMaxItemEvents + 1, eventAt(5))));
+  for (const std::size_t expected : {kMaxItemEvents, std::size_t{1}}) {
+    ASSERT_TRUE(decoder_.next(item_));
+    EXPECT_EQ(std::get<RecordedEvents>(item_.content).count, expected);
+  }
   EXPECT_FALSE(decoder_.next(item_));
 }
 

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "recording/aedat4_header.hpp"
+#include "recording/stored_events.hpp"
 #include "stream/served_stream.hpp"
 #include "stream/stream_error.hpp"
 
@@ -51,6 +52,24 @@ TEST(StreamDecoder, GivesTheItemsOfAPacket) {
   EXPECT_EQ(events.data[1].t_ns, 6000);
   EXPECT_FALSE(decoder.next(item));
   EXPECT_THAT(decoder.takeDamage(), IsEmpty());
+}
+
+TEST(StreamDecoder, MakesFewMessagesOfALargePacket) {
+  constexpr std::size_t kMostEvents = 100'000;
+  const std::vector<std::uint8_t> packet =
+      testing::packetOf(std::vector<testing::StoredEvent>(kMostEvents + 1, {3, 1, 2, 1}));
+  const std::string header = StreamBytes({StreamKind::kEvents, "events", "DAVIS346_1", {346, 260}},
+                                         Aedat4Compression::kNone)
+                                 .take()
+                                 .header;
+  StreamDecoder decoder(bytesOf(header), StreamKind::kEvents);
+  decoder.open(0, {packet.data(), packet.size()});
+  RecordingItem item;
+  for (const std::size_t expected : {kMostEvents, std::size_t{1}}) {
+    ASSERT_TRUE(decoder.next(item));
+    EXPECT_EQ(std::get<RecordedEvents>(item.content).count, expected);
+  }
+  EXPECT_FALSE(decoder.next(item));
 }
 
 TEST(StreamDecoder, NotesWhatCannotBeRead) {
