@@ -2,6 +2,7 @@
 """How long iniVation's server, dv_stream.launch and the deblurring take from the send to publish().
 
     . devel/setup.bash && /usr/bin/python3 test/peers/live_latency.py [latency] [cuts] [--seconds S] [--python PYTHON]
+                                                                      [--server vendor|file]
 
 `latency` simulates a recording of 13 million events a second (346x260, 30 frames a second, exposures of 10 ms),
 lets the vendor's server send it at its own speed in calls of 10 ms of events, and measures
@@ -15,6 +16,9 @@ lets the vendor's server send it at its own speed in calls of 10 ms of events, a
 
 `cuts` sends a quieter recording of 20 s through a relay that ends both connections ten times, wherever in a packet
 they are just then, and measures how long after a cut a deblurred frame comes again.
+
+With `--server file`, paced_file_server.py sends instead, which has nothing to compute: what is left is the network,
+the package and the subscriber.
 
 Exit code 1: something was lost, p99 of arrays or of deblurred frames is not below 12 ms, a cut was not counted, or frames
 did not come again within 1 s. Needs test/peers/run once, for the vendor's library.
@@ -63,13 +67,13 @@ def simulate(folder, seconds, scale):
 
 
 class Server:
-    """The vendor's server in a process of its own."""
+    """A server in a process of its own."""
 
-    def __init__(self, python, recording):
+    def __init__(self, command, recording):
         self.ports = {"events": free_port(), "frames": free_port()}
         self.child = subprocess.Popen(
-            [str(word) for word in (python, FOLDER / "paced_server.py", recording, "--events", self.ports["events"],
-                                    "--frames", self.ports["frames"])],
+            [str(word) for word in (*command, recording, "--events", self.ports["events"], "--frames",
+                                    self.ports["frames"])],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def begin(self):
@@ -228,9 +232,9 @@ def run_on(processors):
     return ("taskset", "-c", ",".join(map(str, sorted(processors))))
 
 
-def vendors_client(python, recording):
+def vendors_client(python, server_command, recording):
     """Prints the row of the vendor's own client."""
-    with Server(python, recording) as server:
+    with Server(server_command, recording) as server:
         with subprocess.Popen([python, FOLDER / "paced_client.py", "--events", str(server.ports["events"]), "--frames",
                                str(server.ports["frames"])], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                               text=True) as client:
@@ -263,9 +267,9 @@ def launch_words(server):
             f"frames_port:={server.ports['frames']}", "stall_timeout_s:=60")
 
 
-def array_latency(python, recording, node_processors, log):
+def array_latency(server_command, recording, node_processors, log):
     """Of arrays, while nobody asks for deblurred frames."""
-    with Server(python, recording) as server:
+    with Server(server_command, recording) as server:
         arrivals = Arrivals("/dvs/events", last_event_us)
         with Process([*run_on(node_processors), *launch_words(server)], log):
             arrivals.wait_for_publisher()
@@ -285,9 +289,9 @@ def array_latency(python, recording, node_processors, log):
     return [f"p99 of arrays {p99:.2f} ms, expected below {MOST_P99_MS:.0f} ms"] if p99 >= MOST_P99_MS else []
 
 
-def latency(python, recording, config, node_processors, log):
+def latency(server_command, recording, config, node_processors, log):
     faults = []
-    with Server(python, recording) as server:
+    with Server(server_command, recording) as server:
         arrivals, diagnostics = Arrivals("/dvs/deblurred/image_raw", stamp_us), Diagnostics()
         with Process([*run_on(node_processors), *launch_words(server), f"config:={config}"], log):
             wait_for_deblurring(arrivals)
@@ -314,9 +318,9 @@ def latency(python, recording, config, node_processors, log):
     return faults
 
 
-def cuts(python, recording, log):
+def cuts(server_command, recording, log):
     faults, gaps = [], []
-    with Server(python, recording) as server:
+    with Server(server_command, recording) as server:
         relays = {kind: Relay(port) for kind, port in server.ports.items()}
         arrivals, diagnostics = Arrivals("/dvs/deblurred/image_raw", stamp_us), Diagnostics()
         with Process(["roslaunch", "fast_edi", "dv_stream.launch", f"events_port:={relays['events'].port}",
@@ -349,12 +353,15 @@ def main():
     parser.add_argument("--pin", action="store_true",
                         help="the nodelets have one processor alone")
     parser.add_argument("--seconds", type=float, default=8.0, help="length of the busy recording (8)")
+    parser.add_argument("--server", choices=("vendor", "file"), default="vendor")
     parser.add_argument("--python", type=pathlib.Path, default=ROOT / "build" / "peers" / "bin" / "python")
     arguments = parser.parse_args()
     parameters = [word.split(":=", 1) for word in arguments.words if ":=" in word]
     parts = [word for word in arguments.words if ":=" not in word] or ["latency", "cuts"]
     if not set(parts) <= {"latency", "cuts"}:
         parser.error("expected latency, cuts or both")
+    server_command = ((arguments.python, FOLDER / "paced_server.py") if arguments.server == "vendor" else
+                      (sys.executable, FOLDER / "paced_file_server.py"))
     processors = sorted(os.sched_getaffinity(0))
     node_processors = {processors[0]} if arguments.pin else set(processors)
     os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{free_port()}"
@@ -370,12 +377,13 @@ def main():
                 rospy.init_node("live_latency", disable_signals=True, disable_rosout=True)
                 if "latency" in parts:
                     recording = simulate(folder, arguments.seconds, BUSY_SCALE)
-                    vendors_client(arguments.python, recording)
-                    faults += array_latency(arguments.python, recording, node_processors, log)
-                    faults += latency(arguments.python, recording, config_with(folder, parameters), node_processors, log)
+                    if arguments.server == "vendor":
+                        vendors_client(arguments.python, server_command, recording)
+                    faults += array_latency(server_command, recording, node_processors, log)
+                    faults += latency(server_command, recording, config_with(folder, parameters), node_processors, log)
                 if "cuts" in parts:
                     recording = simulate(folder, CUT_SECONDS, QUIET_SCALE)
-                    faults += cuts(arguments.python, recording, log)
+                    faults += cuts(server_command, recording, log)
         except Exception:
             log.flush()
             print((folder / "log").read_text()[-3000:], file=sys.stderr)
