@@ -32,24 +32,24 @@ constexpr std::chrono::seconds kLongestUnloading(20);
 /// Four seconds: longer than events are not received for.
 constexpr int kFramesWithoutMaster = 100;
 
-/// A node as a nodelet manager runs it, and who listens to it.
+/// A camera, its node as a nodelet manager runs it, and who listens to it. Each has topics of its
+/// own: where another node of the process has the same subscription, a new one needs no master.
 class Instance {
  public:
-  Instance(const std::string& name, const std::string& output)
-      : name_("/camera/" + name),
-        nh_("/camera", {{"deblurred/image_raw", output + "/image_raw"},
-                        {"deblurred/camera_info", output + "/camera_info"}}),
-        private_nh_(name_),
+  explicit Instance(const std::string& camera)
+      : driver_({FAST_EDI_STUB_DRIVER, "__ns:=" + camera}),
+        nh_(camera),
+        private_nh_(camera + "/deblur"),
         spinner_(1, &queue_),
         consumer_spinner_(1, &consumer_queue_) {
     nh_.setCallbackQueue(&queue_);
     private_nh_.setCallbackQueue(&queue_);
     spinner_.start();
-    node_ = std::make_unique<DeblurNode>(nh_, private_nh_, name_);
-    ros::NodeHandle consumer("/camera");
+    node_ = std::make_unique<DeblurNode>(nh_, private_nh_, private_nh_.getNamespace());
+    ros::NodeHandle consumer(camera);
     consumer.setCallbackQueue(&consumer_queue_);
     subscriber_ = consumer.subscribe<sensor_msgs::Image>(
-        output + "/image_raw", 100, [this](const sensor_msgs::ImageConstPtr&) { ++images_; });
+        "deblurred/image_raw", 100, [this](const sensor_msgs::ImageConstPtr&) { ++images_; });
     consumer_spinner_.start();
   }
 
@@ -60,7 +60,7 @@ class Instance {
   void unload() { node_.reset(); }
 
  private:
-  std::string name_;
+  test::ChildProcess driver_;
   ros::NodeHandle nh_;
   ros::NodeHandle private_nh_;
   ros::CallbackQueue queue_;
@@ -72,8 +72,8 @@ class Instance {
   std::unique_ptr<DeblurNode> node_;
 };
 
-void configure(const std::string& name, int max_buffered_events) {
-  const std::string node = "/camera/" + name;
+void configure(const std::string& camera, int max_buffered_events) {
+  const std::string node = camera + "/deblur";
   ros::param::set(node + "/contrast_threshold_on", 0.3);
   ros::param::set(node + "/contrast_threshold_off", 0.3);
   ros::param::set(node + "/max_buffered_events", max_buffered_events);
@@ -85,11 +85,10 @@ TEST(MasterLoss, UnderOverloadFramesComeOutAndEveryNodeCanBeUnloaded) {
             ros::init_options::NoSigintHandler | ros::init_options::NoRosout);
   ASSERT_TRUE(test::waitUntil([] { return ros::master::check(); }));
   ros::start();
-  configure("overloaded", 1);
-  configure("other", 1'000'000);
-  const test::ChildProcess driver({FAST_EDI_STUB_DRIVER, "__ns:=/camera"});
-  Instance overloaded("overloaded", "deblurred");
-  Instance other("other", "other");
+  configure("/overloaded", 1);
+  configure("/other", 1'000'000);
+  Instance overloaded("/overloaded");
+  Instance other("/other");
   std::atomic<int> suspensions{0};
   ros::CallbackQueue reports;
   ros::NodeHandle nh;
