@@ -28,6 +28,7 @@ import json
 import os
 import pathlib
 import selectors
+import signal
 import socket
 import struct
 import subprocess
@@ -186,7 +187,10 @@ class Diagnostics:
 def published_by_manager():
     """Topics that the nodelets publish to anyone just now."""
     import rosgraph
-    manager = xmlrpc.client.ServerProxy(rosgraph.Master("/live_latency").lookupNode("/dvs/nodelet_manager"))
+    try:
+        manager = xmlrpc.client.ServerProxy(rosgraph.Master("/live_latency").lookupNode("/dvs/nodelet_manager"))
+    except rosgraph.MasterError:
+        return set()  # not there yet
     return {row[4] for row in manager.getBusInfo("/live_latency")[2] if row[2] == "o" and row[5]}
 
 
@@ -199,11 +203,6 @@ def wait_for_deblurring(arrivals):
 
 def stamp_us(buffer):
     _, seconds, nanoseconds = struct.unpack_from("<III", buffer, 0)
-    return seconds * 1000000 + (nanoseconds + 500) // 1000
-
-
-def last_event_us(buffer):
-    seconds, nanoseconds, _ = struct.unpack_from("<IIB", buffer, len(buffer) - 9)
     return seconds * 1000000 + (nanoseconds + 500) // 1000
 
 
@@ -269,17 +268,21 @@ def launch_words(server):
 
 def array_latency(server_command, recording, node_processors, log):
     """Of arrays, while nobody asks for deblurred frames."""
-    with Server(server_command, recording) as server:
-        arrivals = Arrivals("/dvs/events", last_event_us)
-        with Process([*run_on(node_processors), *launch_words(server)], log):
-            arrivals.wait_for_publisher()
+    with Server(server_command, recording) as server, \
+            Process([*run_on(node_processors), *launch_words(server)], log):
+        receiver = subprocess.Popen([find_program("fast_edi", "array_arrivals"), "/dvs/events"],
+                                    stdout=subprocess.PIPE, text=True)
+        try:
+            wait_until(lambda: "/dvs/events" in published_by_manager(), START_TIMEOUT_S, "a subscriber of /dvs/events")
             server.begin()
             sent = server.sent()
-            wait_until(lambda: arrivals.found and arrivals.found[-1][1] >= sent["events"][-1][0], SETTLE_TIMEOUT_S,
-                       "the last array")
-        arrivals.subscriber.unregister()
+            # What has been sent is under way for less than a second.
+            time.sleep(1.0)
+        finally:
+            receiver.send_signal(signal.SIGINT)
+            lines = receiver.communicate()[0].splitlines()
     latencies = []
-    arrived = iter(arrivals.found)
+    arrived = iter([float(word) for word in line.split()] for line in lines)
     when, last = next(arrived)
     for t, _, now in sent["events"]:
         while last < t:

@@ -76,8 +76,8 @@ struct RecordedCalibration {
   std::array<double, 12> projection = {};
 };
 
-/// More events of one place come in several items: few enough to stay in a core's cache from one stage
-/// to the next.
+/// More events of one place come in several items: few enough to stay in a core's cache from one
+/// stage to the next.
 constexpr std::size_t kMaxItemEvents = 10'000;
 
 /// What lies at one place of a recording. Pointers are valid until the next call of next().
