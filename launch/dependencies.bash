@@ -197,7 +197,7 @@ fast_edi_configure() {
 }
 
 # fast_edi_build_package BUILD_FOLDER: builds what the demo needs. What test/run has built there counts,
-# and the other way round.
+# and the other way round. Needs `set -o pipefail`.
 fast_edi_build_package() {
   local log=$1/build.log
   [ -f "$1/Makefile" ] || fast_edi_configure "$1" "${FAST_EDI_OPTIONS[@]}" >/dev/null

@@ -21,7 +21,8 @@ With `--server file`, paced_file_server.py sends instead, which has nothing to c
 the package and the subscriber.
 
 Exit code 1: something was lost, p99 of arrays or of deblurred frames is not below 12 ms, a cut was not counted, or frames
-did not come again within 1 s. Needs test/peers/run once, for the vendor's library.
+did not come again within 1 s. Needs the target array_arrivals, which test/run builds, and but for `--server file`
+test/peers/run once, for the vendor's library.
 """
 import argparse
 import json

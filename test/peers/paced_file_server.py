@@ -5,8 +5,8 @@
 
 In place of paced_server.py, with the same output: what DV's protocol sends is what the file holds, so that nothing is
 packed or compressed here, and the times of the sends are those of the socket's. The file must not be compressed. All
-packets of events that end within --packet-ms go out at its end, frames when their exposure ends. Beyond the times of
-paced_server.py nothing is kept: "events" has [last event's time [us], number of events, time before the send].
+packets of events that end within the same --packet-ms go out together when the last of them ends, frames when their
+exposure ends.
 """
 import argparse
 import json

@@ -1,5 +1,5 @@
 /// \file
-/// A packet of events as AEDAT4 stores it, made without the package's own writer.
+/// A packet of events as AEDAT4 stores it, made without Aedat4Writer, which has limits of its own.
 #pragma once
 
 #include <array>
